@@ -1,0 +1,118 @@
+/* The checked job: plain data in SI units, every default filled in. */
+#ifndef PNEULAB_JOB_SPEC_H
+#define PNEULAB_JOB_SPEC_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include "solver/base/error.h"
+
+enum job_kind { JOB_RESPONSE };
+
+/* ---- material --------------------------------------------------------------------------- */
+
+enum material_model { MATERIAL_NEO_HOOKE, MATERIAL_YEOH, MATERIAL_MOONEY_RIVLIN, MATERIAL_OGDEN };
+
+enum { MATERIAL_TERMS_MAX = 6 };
+
+/* Nearly incompressible hyperelastic solid, W = W_iso(isochoric F) + kappa/2 (J - 1)^2.
+ *   neo-Hooke:      W_iso = mu/2 (I1 - 3),                     c[0] = mu
+ *   Yeoh:           W_iso = sum_i c[i] (I1 - 3)^(i+1),         terms <= 3
+ *   Mooney-Rivlin:  W_iso = c[0] (I1 - 3) + c[1] (I2 - 3)
+ *   Ogden:          W_iso = sum_i c[i]/alpha[i] (l1^alpha[i] + l2^alpha[i] + l3^alpha[i] - 3)
+ * with I1, I2, l of the isochoric part. kappa = bulk_ratio * initial shear modulus. */
+struct material_spec {
+  enum material_model model;
+  int terms;
+  double c[MATERIAL_TERMS_MAX];     /* Pa */
+  double alpha[MATERIAL_TERMS_MAX]; /* Ogden exponents */
+  double density_kg_m3;
+  double bulk_ratio;
+  char name[64];
+  char source[200];
+  double fit_stretch_max; /* largest uniaxial stretch of the data behind the fit, 0 if unknown */
+};
+
+/* ---- actuator --------------------------------------------------------------------------- */
+
+enum chamber_config {
+  CHAMBER_A, /* no gap: one wall between cavities */
+  CHAMBER_B, /* gap down to the bottom layer, chamber attached to it */
+  CHAMBER_C  /* detached from the bottom layer but for a stem around the channel */
+};
+
+struct chamber_run {
+  enum chamber_config config;
+  int count;
+};
+
+enum { CHAMBER_RUNS_MAX = 32, CHAMBERS_MAX = 64 };
+
+/* All lengths in m, angles in rad. x runs from the fixed base, y across (left is +y), z up. */
+struct pneunet_spec {
+  double length;        /* derived when the job gives chamber_length */
+  double cavity_length; /* axial; length = sum of walls, cavities and gaps */
+  double width;         /* at the base */
+  double height_base, height_tip;
+  struct chamber_run runs[CHAMBER_RUNS_MAX];
+  int run_count;
+  int chamber_count;
+  double chamber_gap;
+  double side_wall;    /* thickness of the walls at y = +-width/2 */
+  double gap_wall;     /* axial walls, facing gaps and at both ends */
+  double top_wall;
+  double bottom_layer;
+  double slit;         /* height of the slit under a chamber of configuration C */
+  double slit_floor;   /* thickness of the floor of a chamber of configuration C */
+  double stem;         /* half width of the stem of configuration C */
+  bool has_channel;
+  double channel_width, channel_height, channel_cover;
+  double taper_top, taper_bottom, taper_left, taper_right;
+};
+
+/* ---- load, accuracy, job ---------------------------------------------------------------- */
+
+struct load_spec {
+  double pressure_to; /* Pa */
+  int steps;          /* recorded at k/steps of pressure_to, k = 0 .. steps */
+  double gravity[3];  /* m/s2 */
+};
+
+enum accuracy { ACCURACY_FAST, ACCURACY_STANDARD, ACCURACY_FINE };
+
+/* Elements through each feature; 0 leaves the choice to `accuracy`. */
+struct mesh_spec {
+  int gap_wall, cavity, gap, half_width, side_wall, bottom, height, top;
+};
+
+struct metric_spec {
+  double fit_from, fit_to; /* Pa: range of the straight-line fit (sensitivity, R2) */
+  double cai_from, cai_to; /* Pa: range of the curvature adaptability index */
+};
+
+struct job_spec {
+  enum job_kind kind;
+  char name[200];
+  struct pneunet_spec pneunet;
+  struct material_spec material;
+  struct load_spec load;
+  struct mesh_spec mesh;
+  struct metric_spec metrics;
+  bool contact;
+  bool half_model; /* symmetric about y = 0 in geometry and load */
+  enum accuracy accuracy;
+  double timeout_s;  /* 0: none */
+  char hash[65];     /* SHA-256 of the canonical job text (sorted keys, name and labels left out) */
+};
+
+/* Reads and checks a job document.
+ * text: JSON of `size` bytes. On success fills *spec and returns STATUS_OK; otherwise fills
+ * *error (pointer; line and column for syntax errors) and returns STATUS_SYNTAX, INVALID,
+ * GEOMETRY or TOO_LARGE. Nothing is kept or owned. */
+enum status job_spec_read(const char *text, size_t size, struct job_spec *spec,
+                          struct error *error);
+
+/* Initial shear modulus in Pa: neo-Hooke mu; Yeoh 2 c1; Mooney-Rivlin 2 (c1 + c2);
+ * Ogden sum c_i alpha_i / 2. */
+double material_shear_modulus(const struct material_spec *material);
+
+#endif
