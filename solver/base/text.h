@@ -1,0 +1,24 @@
+/* Small helpers for text that came from outside and goes into messages. */
+#ifndef PNEULAB_BASE_TEXT_H
+#define PNEULAB_BASE_TEXT_H
+
+#include <stddef.h>
+
+/* Longest prefix of `text` of at most `limit` bytes that does not cut a UTF-8 character.
+ * Returns its length in bytes. */
+size_t text_prefix(const char *text, size_t limit);
+
+/* Writes `text` in double quotes into `out` (`size` >= 8 bytes), shortened with "..." to what
+ * fits, control characters replaced by '?'. Returns `out`. */
+const char *text_quote(char *out, size_t size, const char *text);
+
+/* Number of insertions, deletions, replacements and swaps of neighbours that turn `a` into
+ * `b`, upper and lower case taken as equal. Texts over 64 bytes are not compared: the answer
+ * is then SIZE_MAX. */
+size_t text_distance(const char *a, const char *b);
+
+/* The entry of `words` nearest to `text`, or NULL when none is near enough to be meant
+ * (more than a third of its letters differ). The pointer is the caller's own. */
+const char *text_nearest(const char *text, const char *const *words, size_t count);
+
+#endif

@@ -1,0 +1,283 @@
+#include "solver/base/units.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <pthread.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <udunits2.h>
+
+#include "solver/base/text.h"
+
+enum { QUANTITY_MAX = 64, BASE_COUNT = 4 };
+
+struct units {
+  ut_system *system;
+};
+
+/* A unit taken apart: value in SI = scale * number, SI unit = m^p0 kg^p1 s^p2 rad^p3. */
+struct dimension {
+  double scale;
+  int power[BASE_COUNT];
+  bool linear; /* no offset, logarithm, time origin or other base unit in it */
+};
+
+/* The parser and the status of UDUNITS-2 live in static variables of the library, so calls
+ * from several threads must not overlap, whichever handle they use. */
+static pthread_mutex_t library_lock = PTHREAD_MUTEX_INITIALIZER;
+
+static const struct {
+  const char *name;
+  int power[BASE_COUNT];
+} dimension_names[] = {
+    {"a length", {1, 0, 0, 0}},      {"an area", {2, 0, 0, 0}},
+    {"a volume", {3, 0, 0, 0}},      {"a mass", {0, 1, 0, 0}},
+    {"a time", {0, 0, 1, 0}},        {"an angle", {0, 0, 0, 1}},
+    {"a pressure", {-1, 1, -2, 0}},  {"a force", {1, 1, -2, 0}},
+    {"a speed", {1, 0, -1, 0}},      {"an acceleration", {1, 0, -2, 0}},
+    {"a density", {-3, 1, 0, 0}},    {"a rate", {0, 0, -1, 0}},
+    {"a pure number", {0, 0, 0, 0}}, {"a stiffness", {0, 1, -2, 0}},
+    {"a damping", {0, 1, -1, 0}},
+};
+
+/* ---- taking a unit apart ---------------------------------------------------------------- */
+
+/* The visitor's functions cannot reach the visitor itself, so both travel together. */
+struct visit {
+  const ut_visitor *visitor;
+  struct dimension *dimension;
+};
+
+static void add_power(struct dimension *dimension, const ut_unit *basic, int power) {
+  static const char *const symbols[BASE_COUNT] = {"m", "kg", "s", "rad"};
+  const char *symbol = ut_get_symbol(basic, UT_ASCII);
+  for (int i = 0; symbol && i < BASE_COUNT; i++) {
+    if (strcmp(symbol, symbols[i]) == 0) {
+      dimension->power[i] += power;
+      return;
+    }
+  }
+  dimension->linear = false;
+}
+
+static ut_status visit_basic(const ut_unit *unit, void *argument) {
+  add_power(((struct visit *)argument)->dimension, unit, 1);
+  return UT_SUCCESS;
+}
+
+static ut_status visit_product(const ut_unit *unit, int count, const ut_unit *const *basic,
+                               const int *powers, void *argument) {
+  (void)unit;
+  for (int i = 0; i < count; i++) {
+    add_power(((struct visit *)argument)->dimension, basic[i], powers[i]);
+  }
+  return UT_SUCCESS;
+}
+
+static ut_status visit_galilean(const ut_unit *unit, double scale, const ut_unit *underlying,
+                                double offset, void *argument) {
+  (void)unit;
+  struct visit *visit = argument;
+  visit->dimension->scale *= scale;
+  if (offset != 0.0) {
+    visit->dimension->linear = false;
+  }
+  return ut_accept_visitor(underlying, visit->visitor, visit);
+}
+
+static ut_status visit_timestamp(const ut_unit *unit, const ut_unit *time, double origin,
+                                 void *argument) {
+  (void)unit, (void)time, (void)origin;
+  ((struct visit *)argument)->dimension->linear = false;
+  return UT_SUCCESS;
+}
+
+static ut_status visit_logarithmic(const ut_unit *unit, double base, const ut_unit *reference,
+                                   void *argument) {
+  (void)unit, (void)base, (void)reference;
+  ((struct visit *)argument)->dimension->linear = false;
+  return UT_SUCCESS;
+}
+
+/* false when UDUNITS does not know the unit. Call with the lock held. */
+static bool parse_unit(const struct units *units, const char *text, struct dimension *dimension) {
+  static const ut_visitor visitor = {visit_basic, visit_product, visit_galilean, visit_timestamp,
+                                     visit_logarithmic};
+  ut_unit *unit = ut_parse(units->system, text, UT_UTF8);
+  if (!unit) {
+    return false;
+  }
+  *dimension = (struct dimension){.scale = 1.0, .linear = true};
+  struct visit visit = {&visitor, dimension};
+  ut_status status = ut_accept_visitor(unit, &visitor, &visit);
+  ut_free(unit);
+  return status == UT_SUCCESS;
+}
+
+/* ---- the handle ------------------------------------------------------------------------- */
+
+enum status units_create(struct units **units, struct error *error) {
+  struct units *created = calloc(1, sizeof *created);
+  if (!created) {
+    return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the unit database");
+  }
+  enum status status = STATUS_OK;
+  pthread_mutex_lock(&library_lock);
+  ut_set_error_message_handler(ut_ignore); /* it would write to standard error */
+  created->system = ut_read_xml(NULL);
+  ut_unit *degree = created->system ? ut_get_unit_by_name(created->system, "degree") : NULL;
+  if (!degree || ut_map_name_to_unit("deg", UT_ASCII, degree) != UT_SUCCESS) {
+    status = error_set(error, STATUS_IO, NULL,
+                       "the unit database cannot be read: install UDUNITS-2's data, or name its "
+                       "file in UDUNITS2_XML_PATH");
+  }
+  ut_free(degree);
+  pthread_mutex_unlock(&library_lock);
+  if (status != STATUS_OK) {
+    units_destroy(created);
+    return status;
+  }
+  *units = created;
+  return STATUS_OK;
+}
+
+void units_destroy(struct units *units) {
+  if (!units) {
+    return;
+  }
+  pthread_mutex_lock(&library_lock);
+  ut_free_system(units->system);
+  pthread_mutex_unlock(&library_lock);
+  free(units);
+}
+
+/* ---- reading a quantity ----------------------------------------------------------------- */
+
+static size_t count_digits(const char *text) {
+  return strspn(text, "0123456789");
+}
+
+/* Length of the decimal number at the start of `text`, 0 when there is none. Stricter than
+ * strtod: no hexadecimal, no "inf", no "nan". */
+static size_t number_length(const char *text) {
+  const char *at = text + (*text == '-' || *text == '+');
+  size_t whole = count_digits(at);
+  at += whole;
+  size_t part = *at == '.' ? count_digits(at + 1) : 0;
+  if (whole + part == 0) {
+    return 0;
+  }
+  if (*at == '.') {
+    at += part + 1;
+  }
+  if (*at == 'e' || *at == 'E') {
+    size_t sign = at[1] == '-' || at[1] == '+';
+    size_t digits = count_digits(at + 1 + sign);
+    if (digits > 0) {
+      at += 1 + sign + digits;
+    }
+  }
+  return (size_t)(at - text);
+}
+
+/* UDUNITS takes whole expressions: factors ("3 kPa"), shifts ("m @ 5"), logarithms. After the
+ * number only a plain unit may follow: letters, products, quotients, one-digit powers. */
+static bool is_plain_unit(const char *unit) {
+  if (strncmp(unit, "1/", 2) == 0) {
+    unit += 2;
+  }
+  int previous = 0;
+  for (const char *at = unit; *at; at++) {
+    unsigned char c = (unsigned char)*at;
+    bool after_name = isalpha(previous) || previous == '^' || previous == '-' || previous == ')';
+    if (isdigit(c) ? !after_name
+        : c == '-' ? !(isalpha(previous) || previous == '^')
+                   : !isalpha(c) && c < 0x80 && !strchr(" ./*^()%", c)) {
+      return false;
+    }
+    previous = c < 0x80 ? c : 'x';
+  }
+  return strstr(unit, "since") == NULL && strstr(unit, "after") == NULL &&
+         strstr(unit, "from") == NULL && strstr(unit, "ref") == NULL;
+}
+
+static const char *dimension_name(const struct dimension *dimension) {
+  for (size_t i = 0; i < sizeof dimension_names / sizeof *dimension_names; i++) {
+    if (memcmp(dimension_names[i].power, dimension->power, sizeof dimension->power) == 0) {
+      return dimension_names[i].name;
+    }
+  }
+  return "another kind of quantity";
+}
+
+static enum status read_unit(const struct units *units, const char *name, const char *number,
+                             const char *quoted, const char *unit, double *scale,
+                             struct error *error) {
+  struct dimension given, wanted;
+  pthread_mutex_lock(&library_lock);
+  bool known = is_plain_unit(name) && parse_unit(units, name, &given);
+  bool wanted_known = parse_unit(units, unit, &wanted);
+  pthread_mutex_unlock(&library_lock);
+  if (!wanted_known || !wanted.linear) {
+    return error_set(error, STATUS_INTERNAL, NULL, "the program asks for the unknown unit \"%s\"",
+                     unit);
+  }
+  if (!known) {
+    return error_set(error, STATUS_INVALID, NULL,
+                     "%s has an unknown unit: write %s with its unit, for example \"%s %s\"",
+                     quoted, dimension_name(&wanted), number, unit);
+  }
+  if (!given.linear) {
+    return error_set(error, STATUS_INVALID, NULL,
+                     "%s is not a plain multiple of %s: write for example \"%s %s\"", quoted, unit,
+                     number, unit);
+  }
+  if (memcmp(given.power, wanted.power, sizeof given.power) != 0) {
+    return error_set(error, STATUS_INVALID, NULL,
+                     "%s is %s, but %s is wanted: write for example \"%s %s\"", quoted,
+                     dimension_name(&given), dimension_name(&wanted), number, unit);
+  }
+  *scale = given.scale;
+  return STATUS_OK;
+}
+
+enum status units_read(const struct units *units, const char *text, const char *unit,
+                       double *value_si, struct error *error) {
+  char quoted[QUANTITY_MAX + 16];
+  text_quote(quoted, sizeof quoted, text);
+  if (strnlen(text, QUANTITY_MAX + 1) > QUANTITY_MAX) {
+    return error_set(error, STATUS_INVALID, NULL,
+                     "%s is longer than %d characters: write for example \"1 %s\"", quoted,
+                     QUANTITY_MAX, unit);
+  }
+  size_t length = number_length(text);
+  if (length == 0) {
+    return error_set(error, STATUS_INVALID, NULL,
+                     "%s does not begin with a decimal number: write for example \"1 %s\"", quoted,
+                     unit);
+  }
+  char number[QUANTITY_MAX + 1];
+  memcpy(number, text, length);
+  number[length] = '\0';
+  const char *name = text + length + strspn(text + length, " ");
+  if (*name == '\0') {
+    return error_set(error, STATUS_INVALID, NULL, "%s has no unit: write \"%s %s\"", quoted, number,
+                     unit);
+  }
+  double scale = 0.0;
+  enum status status = read_unit(units, name, number, quoted, unit, &scale, error);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  errno = 0;
+  double value = strtod(number, NULL);
+  bool vanished = value != 0.0 && value * scale == 0.0;
+  if (errno == ERANGE || vanished || !isfinite(value * scale)) {
+    return error_set(error, STATUS_INVALID, NULL,
+                     "%s is beyond the range of numbers: write for example \"1 %s\"", quoted, unit);
+  }
+  *value_si = value * scale;
+  return STATUS_OK;
+}

@@ -1,0 +1,294 @@
+#include "solver/mesh/pneunet.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include "solver/mesh/grid.h"
+
+/* Features along the body, carrying the chamber's configuration. */
+enum axial_tag {
+  AXIAL_END,      /* wall at the base or the tip, where the channel stops */
+  AXIAL_END_C,    /* the same, of a chamber of configuration C */
+  AXIAL_WALL,     /* wall of a chamber of configuration A or B */
+  AXIAL_WALL_C,   /* wall of a chamber of configuration C */
+  AXIAL_JOINT,    /* the one wall between two chambers of configuration A */
+  AXIAL_CAVITY,   /* cavity of a chamber of configuration A or B */
+  AXIAL_CAVITY_C, /* cavity of a chamber of configuration C */
+  AXIAL_GAP
+};
+
+/* Features across the body, by |y|. */
+enum lateral_tag { LATERAL_CHANNEL, LATERAL_STEM, LATERAL_INNER, LATERAL_SIDE };
+
+/* Features from the bottom face to the top. */
+enum vertical_tag {
+  VERTICAL_BOTTOM, /* bottom layer below the channel, or all of it without one */
+  VERTICAL_CHANNEL,
+  VERTICAL_COVER, /* bottom layer above the channel */
+  VERTICAL_SLIT,  /* slit under chambers of configuration C */
+  VERTICAL_FLOOR, /* floor of chambers of configuration C */
+  VERTICAL_CAVITY,
+  VERTICAL_TOP
+};
+
+static bool tag_is_void_axial(int tag) {
+  return tag == AXIAL_CAVITY || tag == AXIAL_CAVITY_C;
+}
+
+static enum cell_kind pneunet_cell(const void *context, const int tag[3]) {
+  const struct pneunet_spec *p = context;
+  int axial = tag[0], lateral = tag[1], vertical = tag[2];
+  bool over_channel = p->has_channel && lateral == LATERAL_CHANNEL;
+  bool detached = axial == AXIAL_CAVITY_C || axial == AXIAL_WALL_C || axial == AXIAL_END_C;
+  bool end = axial == AXIAL_END || axial == AXIAL_END_C;
+  switch (vertical) {
+  case VERTICAL_BOTTOM:
+    return CELL_SOLID;
+  case VERTICAL_CHANNEL:
+    return over_channel && !end ? CELL_CAVITY : CELL_SOLID;
+  case VERTICAL_COVER:
+    return over_channel && tag_is_void_axial(axial) ? CELL_CAVITY : CELL_SOLID;
+  default:
+    break;
+  }
+  if (axial == AXIAL_GAP) {
+    return CELL_GAP;
+  }
+  if (vertical == VERTICAL_SLIT && detached && lateral != LATERAL_CHANNEL &&
+      lateral != LATERAL_STEM) {
+    return CELL_GAP;
+  }
+  if ((vertical == VERTICAL_SLIT || vertical == VERTICAL_FLOOR) && detached) {
+    return over_channel && axial == AXIAL_CAVITY_C ? CELL_CAVITY : CELL_SOLID;
+  }
+  bool hollow = vertical != VERTICAL_TOP && lateral != LATERAL_SIDE && tag_is_void_axial(axial);
+  return hollow ? CELL_CAVITY : CELL_SOLID;
+}
+
+double pneunet_height(const struct pneunet_spec *p, double x) {
+  double height = p->height_base + (p->height_tip - p->height_base) * x / p->length;
+  return height - x * (tan(p->taper_top) + tan(p->taper_bottom));
+}
+
+static void pneunet_map(const void *context, const double grid_point[3], double x[3]) {
+  const struct pneunet_spec *p = context;
+  double angle = grid_point[1] > 0 ? p->taper_left : p->taper_right;
+  double narrowing = 1 - 2 * grid_point[0] * tan(angle) / p->width;
+  x[0] = grid_point[0];
+  x[1] = grid_point[1] * narrowing;
+  x[2] = grid_point[0] * tan(p->taper_bottom) +
+         grid_point[2] * pneunet_height(p, grid_point[0]) / p->height_base;
+}
+
+/* Sizes of elements relative to the height, per accuracy tier. */
+struct tier {
+  double cavity, half_width, bottom, height;
+  int gap_wall, side_wall, top;
+};
+
+struct mesh_spec pneunet_resolution(const struct job_spec *spec) {
+  static const struct tier tiers[] = {
+      [ACCURACY_FAST] = {0.35, 0.70, 0.45, 0.33, 2, 1, 1},
+      [ACCURACY_STANDARD] = {0.35, 0.70, 0.45, 0.22, 2, 1, 1},
+      [ACCURACY_FINE] = {0.18, 0.24, 0.20, 0.11, 2, 2, 2},
+  };
+  const struct tier *tier = &tiers[spec->accuracy];
+  const struct pneunet_spec *p = &spec->pneunet;
+  double h = p->height_base;
+  struct mesh_spec chosen = spec->mesh;
+#define CHOOSE(field, value)                                                                       \
+  if (chosen.field <= 0) {                                                                         \
+    chosen.field = (value);                                                                        \
+  }
+#define CELLS(extent, size) (int)fmax(1, ceil((extent) / ((size)*h) - 0.05))
+  CHOOSE(gap_wall, tier->gap_wall)
+  CHOOSE(side_wall, tier->side_wall)
+  CHOOSE(top, tier->top)
+  CHOOSE(gap, 1)
+  CHOOSE(cavity, CELLS(p->cavity_length, tier->cavity))
+  CHOOSE(half_width, CELLS(0.5 * p->width - p->side_wall, tier->half_width))
+  CHOOSE(bottom, CELLS(p->bottom_layer, tier->bottom))
+  CHOOSE(height, CELLS(h - p->top_wall - p->bottom_layer, tier->height))
+#undef CELLS
+#undef CHOOSE
+  return chosen;
+}
+
+/* One stretch of a grid axis. */
+struct stretch {
+  double end;
+  int cells;
+  int tag;
+};
+
+/* Appends stretches in order, leaving out those of no extent. */
+static enum status extend_all(struct grid_axis *axis, const struct stretch *list, int count) {
+  enum status status = STATUS_OK;
+  for (int s = 0; s < count && status == STATUS_OK; s++) {
+    double start = axis->line[axis->line_count - 1];
+    if (list[s].end > start + 1e-12) {
+      status = grid_axis_extend(axis, list[s].end, list[s].cells, list[s].tag);
+    }
+  }
+  return status;
+}
+
+static enum chamber_config config_of(const struct pneunet_spec *p, int chamber) {
+  int run = 0;
+  while (chamber >= p->runs[run].count) {
+    chamber -= p->runs[run++].count;
+  }
+  return p->runs[run].config;
+}
+
+/* Lines along the body; station[c] receives the line where chamber c starts, and
+ * station[chamber_count] the last line. */
+static enum status axial_lines(const struct pneunet_spec *p, const struct mesh_spec *n,
+                               struct grid_axis *axis, int *station) {
+  double x = 0;
+  enum status status = grid_axis_extend(axis, 0, 0, 0);
+  bool shared_wall = false;
+  for (int c = 0; c < p->chamber_count && status == STATUS_OK; c++) {
+    enum chamber_config config = config_of(p, c);
+    bool last = c + 1 == p->chamber_count;
+    bool joint = !last && config == CHAMBER_A && config_of(p, c + 1) == CHAMBER_A;
+    int wall = config == CHAMBER_C ? AXIAL_WALL_C : AXIAL_WALL;
+    int end = config == CHAMBER_C ? AXIAL_END_C : AXIAL_END;
+    int cavity = config == CHAMBER_C ? AXIAL_CAVITY_C : AXIAL_CAVITY;
+    station[c] = axis->line_count - 1;
+    struct stretch list[4];
+    int count = 0;
+    if (!shared_wall) {
+      list[count++] = (struct stretch){x += p->gap_wall, n->gap_wall, c == 0 ? end : wall};
+    }
+    list[count++] = (struct stretch){x += p->cavity_length, n->cavity, cavity};
+    int after = joint ? AXIAL_JOINT : last ? end : wall;
+    list[count++] = (struct stretch){x += p->gap_wall, n->gap_wall, after};
+    if (!last && !joint) {
+      list[count++] = (struct stretch){x += p->chamber_gap, n->gap, AXIAL_GAP};
+    }
+    status = extend_all(axis, list, count);
+    shared_wall = joint;
+  }
+  station[p->chamber_count] = axis->line_count - 1;
+  return status;
+}
+
+/* Lines across the body: from 0 for a half model, mirrored about 0 otherwise. */
+static enum status lateral_lines(const struct pneunet_spec *p, const struct mesh_spec *n,
+                                 bool half, bool detached, struct grid_axis *axis) {
+  struct stretch list[4];
+  int count = 0;
+  if (p->has_channel) {
+    list[count++] = (struct stretch){0.5 * p->channel_width, 1, LATERAL_CHANNEL};
+  }
+  if (detached) {
+    list[count++] = (struct stretch){p->stem, 1, LATERAL_STEM};
+  }
+  double side = 0.5 * p->width;
+  list[count++] = (struct stretch){side - p->side_wall, n->half_width, LATERAL_INNER};
+  list[count++] = (struct stretch){side, n->side_wall, LATERAL_SIDE};
+  enum status status = STATUS_OK;
+  if (!half) {
+    status = grid_axis_extend(axis, -side, 0, 0);
+    for (int s = count - 1; s >= 0 && status == STATUS_OK; s--) {
+      struct stretch mirrored = {s > 0 ? -list[s - 1].end : 0, list[s].cells, list[s].tag};
+      status = extend_all(axis, &mirrored, 1);
+    }
+  } else {
+    status = grid_axis_extend(axis, 0, 0, 0);
+  }
+  return status == STATUS_OK ? extend_all(axis, list, count) : status;
+}
+
+/* Lines from bottom to top; *core receives the number of lines of the bottom layer. */
+static enum status vertical_lines(const struct pneunet_spec *p, const struct mesh_spec *n,
+                                  bool detached, struct grid_axis *axis, int *core) {
+  double b = p->bottom_layer, h = p->height_base;
+  struct stretch below[3];
+  int count = 0;
+  if (p->has_channel) {
+    double ceiling = b - p->channel_cover;
+    below[count++] = (struct stretch){ceiling - p->channel_height, 1, VERTICAL_BOTTOM};
+    below[count++] = (struct stretch){ceiling, 1, VERTICAL_CHANNEL};
+    below[count++] = (struct stretch){b, 1, VERTICAL_COVER};
+  } else {
+    below[count++] = (struct stretch){b, n->bottom, VERTICAL_BOTTOM};
+  }
+  enum status status = grid_axis_extend(axis, 0, 0, 0);
+  if (status == STATUS_OK) {
+    status = extend_all(axis, below, count);
+  }
+  *core = axis->line_count;
+  struct stretch above[4];
+  count = 0;
+  if (detached) {
+    above[count++] = (struct stretch){b + p->slit, 1, VERTICAL_SLIT};
+    above[count++] = (struct stretch){b + p->slit + p->slit_floor, 1, VERTICAL_FLOOR};
+  }
+  above[count++] = (struct stretch){h - p->top_wall, n->height, VERTICAL_CAVITY};
+  above[count++] = (struct stretch){h, n->top, VERTICAL_TOP};
+  return status == STATUS_OK ? extend_all(axis, above, count) : status;
+}
+
+/* Marks the nodes of the bottom layer, and finds centreline and stations. */
+static enum status mark_sections(const struct pneunet_spec *p, const struct grid *grid, int core,
+                                 const int *station, struct mesh *mesh) {
+  const struct grid_axis *axis = grid->axis;
+  double layer = axis[2].line[core - 1];
+  for (int n = 0; n < mesh->node_count; n++) {
+    const double *x = mesh->x + 3 * (size_t)n;
+    double z = (x[2] - x[0] * tan(p->taper_bottom)) * p->height_base / pneunet_height(p, x[0]);
+    mesh->node_core[n] = z <= layer * (1 + 1e-9);
+  }
+  for (int s = 0; s < mesh->section_count; s++) {
+    double position =
+        s % 2 ? 0.5 * (axis[0].line[s / 2] + axis[0].line[s / 2 + 1]) : axis[0].line[s / 2];
+    double x[3];
+    pneunet_map(p, (double[3]){position, 0, 0}, x);
+    mesh->centreline[s] = grid_find_node(mesh, x, s);
+  }
+  mesh->station_count = p->chamber_count + 1;
+  mesh->station = malloc(sizeof *mesh->station * (size_t)mesh->station_count);
+  if (!mesh->station) {
+    return STATUS_NO_MEMORY;
+  }
+  for (int s = 0; s < mesh->station_count; s++) {
+    mesh->station[s] = 2 * station[s];
+  }
+  return STATUS_OK;
+}
+
+enum status pneunet_mesh(const struct job_spec *spec, struct mesh *mesh, struct error *error) {
+  const struct pneunet_spec *p = &spec->pneunet;
+  struct mesh_spec n = pneunet_resolution(spec);
+  struct grid grid = {0};
+  int station[CHAMBERS_MAX + 1], core = 0;
+  bool detached = false;
+  for (int r = 0; r < p->run_count; r++) {
+    detached = detached || p->runs[r].config == CHAMBER_C;
+  }
+  enum status status = axial_lines(p, &n, &grid.axis[0], station);
+  if (status == STATUS_OK) {
+    status = lateral_lines(p, &n, spec->half_model, detached, &grid.axis[1]);
+  }
+  if (status == STATUS_OK) {
+    status = vertical_lines(p, &n, detached, &grid.axis[2], &core);
+  }
+  if (status != STATUS_OK) {
+    error_set(error, status, NULL, "no memory for the lines of the mesh");
+    goto done;
+  }
+  status = grid_mesh(&grid, spec->half_model, pneunet_cell, pneunet_map, p, mesh, error);
+  if (status != STATUS_OK) {
+    goto done;
+  }
+  mesh->wall_thickness = fmin(fmin(p->side_wall, p->gap_wall), p->top_wall);
+  status = mark_sections(p, &grid, core, station, mesh);
+  if (status != STATUS_OK) {
+    error_set(error, status, NULL, "no memory for the stations of the mesh");
+    mesh_release(mesh);
+  }
+done:
+  grid_release(&grid);
+  return status;
+}
