@@ -1,0 +1,28 @@
+/* Files and directories. Errors name the path and the system's reason. */
+#ifndef PNEULAB_SERVER_FILE_H
+#define PNEULAB_SERVER_FILE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "solver/base/error.h"
+
+/* Creates the directory and its missing parents (mode 0755). STATUS_IO on failure. */
+enum status file_make_directory(const char *path, struct error *error);
+
+/* Removes a directory with everything in it; links are removed, not followed. A path that does
+ * not exist is fine. */
+void file_remove_tree(const char *path);
+
+/* Reads a regular file of at most `limit` bytes. *data gets `*size` bytes and a NUL, malloc'd,
+ * owned by the caller. STATUS_NOT_FOUND, STATUS_TOO_LARGE, STATUS_NO_MEMORY or STATUS_IO. */
+enum status file_read(const char *path, size_t limit, char **data, size_t *size,
+                      struct error *error);
+
+/* Writes the whole file (mode 0644), replacing an old one. STATUS_IO on failure. */
+enum status file_write(const char *path, const char *data, size_t size, struct error *error);
+
+/* Whether name is a plain file name: 1 to 100 of [A-Za-z0-9._-], not starting with a dot. */
+bool file_name_is_plain(const char *name);
+
+#endif

@@ -1,0 +1,33 @@
+/* The daemon's command line. */
+#ifndef PNEULAB_SERVER_OPTIONS_H
+#define PNEULAB_SERVER_OPTIONS_H
+
+#include <limits.h>
+#include <stdint.h>
+
+#include "solver/base/error.h"
+
+struct options {
+  char data[PATH_MAX];   /* data directory */
+  char solver[PATH_MAX]; /* path of pneulab-solve, or a bare name looked up in PATH */
+  char address[64];      /* numeric address to listen on, without brackets */
+  uint16_t port;         /* 0: any free one */
+  unsigned workers;
+  unsigned connections_per_address;
+  uint64_t memory_limit_bytes; /* of one worker; 0: none */
+  double drain_timeout_s;      /* how long running jobs may go on after SIGTERM */
+  double time_limit_s;         /* of a job that sets no timeout */
+  double timeout_margin_s;     /* what a worker may overrun its job's timeout */
+  double header_timeout_s;     /* for one request's header, then again for its body */
+  double retry_delay_s;        /* before a second attempt; twice as long before a third */
+  enum { OPTIONS_RUN, OPTIONS_HELP, OPTIONS_VERSION } action;
+};
+
+/* Fills *options from the command line over the defaults. STATUS_INVALID with a sentence that
+ * names the option, what is allowed and an example. */
+enum status options_read(int argc, char **argv, struct options *options, struct error *error);
+
+/* The text of --help. Static storage. */
+const char *options_help(void);
+
+#endif

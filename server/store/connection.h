@@ -1,0 +1,55 @@
+/* Inside the store: its connections. */
+#ifndef PNEULAB_STORE_CONNECTION_H
+#define PNEULAB_STORE_CONNECTION_H
+
+#include <pthread.h>
+#include <sqlite3.h>
+#include <stdbool.h>
+
+#include "server/store/store.h"
+
+struct units;
+
+enum { STORE_READERS = 8 };
+
+struct store {
+  sqlite3 *writer; /* the only connection that writes and checkpoints */
+  pthread_mutex_t writer_mutex;
+  sqlite3 *readers[STORE_READERS];
+  bool reader_busy[STORE_READERS];
+  pthread_mutex_t reader_mutex;
+  pthread_cond_t reader_free;
+  struct units *units; /* for values in SI */
+};
+
+/* Takes a connection for reading, waiting for a free one, with a read transaction open: all that
+ * is read until store_read_end is one consistent state. NULL and *error on failure. */
+sqlite3 *store_read_begin(struct store *store, struct error *error);
+void store_read_end(struct store *store, sqlite3 *reader);
+
+/* Locks the writer and opens a transaction. On failure nothing is locked. */
+enum status store_write_begin(struct store *store, struct error *error);
+
+/* Commits when status is STATUS_OK, else rolls back; unlocks. Returns status, or the reason why
+ * the commit failed. */
+enum status store_write_end(struct store *store, enum status status, struct error *error);
+
+/* Runs the migrations that the database lacks, each in a transaction of its own. */
+enum status store_migrate(sqlite3 *writer, struct error *error);
+
+/* Reads the state of a job inside a write transaction. STATUS_NOT_FOUND. */
+enum status store_state_of(sqlite3 *db, int64_t id, enum job_state *state, struct error *error);
+
+/* STATUS_NOT_FOUND with the sentence for a job that does not exist. */
+enum status store_no_job(int64_t id, struct error *error);
+
+/* Fills *record from a row of the columns JOB_COLUMNS and reads labels, metrics, artifacts. */
+enum status store_record_read(sqlite3 *db, sqlite3_stmt *row, struct job_record *record,
+                              struct error *error);
+
+#define JOB_COLUMNS                                                                                \
+  "job.id, job.state, job.reason_code, job.message, job.kind, job.name, job.spec_hash, "           \
+  "job.attempt, coalesce(job.retry_of, 0), job.created_ms, coalesce(job.started_ms, 0), "          \
+  "coalesce(job.finished_ms, 0), EXISTS (SELECT 1 FROM result WHERE result.job_id = job.id)"
+
+#endif

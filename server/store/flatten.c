@@ -1,0 +1,149 @@
+#include "server/store/flatten.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "server/store/sql.h"
+#include "solver/base/units.h"
+
+/* A dimension met in jobs: a unit of it, and the SI unit in which its values are stored. */
+static const struct {
+  const char *unit, *si;
+} dimensions[] = {
+    {"mm", "m"},        {"kPa", "Pa"},   {"deg", "rad"},   {"kg/m3", "kg m-3"}, {"m/s2", "m s-2"},
+    {"s", "s"},         {"Hz", "s-1"},   {"N", "N"},       {"kg", "kg"},        {"m/s", "m s-1"},
+    {"N/m", "N m-1"},   {"N s/m", "N s m-1"}, {"N/Pa", "m2"}, {"m3", "m3"},     {"J", "J"},
+    {"K", "K"},
+};
+
+struct flattening {
+  sqlite3 *db;
+  sqlite3_stmt *insert;
+  int64_t job_id;
+  const struct units *units;
+  struct error *error;
+  char pointer[512];
+};
+
+/* Whether text is a quantity; its value and the name of its SI unit. */
+static bool quantity_read(const struct units *units, const char *text, double *value,
+                          const char **si) {
+  if (strspn(text, "+-.0123456789") == 0) {
+    return false;
+  }
+  for (size_t i = 0; i < sizeof dimensions / sizeof *dimensions; i++) {
+    if (units_read(units, text, dimensions[i].unit, value, NULL) == STATUS_OK) {
+      *si = dimensions[i].si;
+      return true;
+    }
+  }
+  return false;
+}
+
+static enum status flatten_leaf(struct flattening *to, const json_t *leaf) {
+  char number[32];
+  const char *text = number, *unit = "";
+  double value = 0;
+  bool has_value = true;
+  if (json_is_string(leaf)) {
+    text = json_string_value(leaf);
+    has_value = quantity_read(to->units, text, &value, &unit);
+  } else if (json_is_integer(leaf)) {
+    value = (double)json_integer_value(leaf);
+    snprintf(number, sizeof number, "%lld", (long long)json_integer_value(leaf));
+  } else if (json_is_real(leaf)) {
+    value = json_real_value(leaf);
+    snprintf(number, sizeof number, "%.17g", value);
+  } else {
+    value = json_is_true(leaf);
+    has_value = json_is_boolean(leaf);
+    text = json_is_true(leaf) ? "true" : json_is_false(leaf) ? "false" : "null";
+  }
+  sqlite3_reset(to->insert);
+  sqlite3_bind_int64(to->insert, 1, to->job_id);
+  sqlite3_bind_text(to->insert, 2, to->pointer, -1, SQLITE_STATIC);
+  if (has_value) {
+    sqlite3_bind_double(to->insert, 3, value);
+  } else {
+    sqlite3_bind_null(to->insert, 3);
+  }
+  sqlite3_bind_text(to->insert, 4, text, -1, SQLITE_STATIC);
+  sqlite3_bind_text(to->insert, 5, unit, -1, SQLITE_STATIC);
+  int row;
+  return sql_step(to->insert, &row, to->error);
+}
+
+/* Appends "/key" with ~ and / escaped (RFC 6901); false when the pointer gets too long. */
+static bool pointer_push(struct flattening *to, const char *key) {
+  size_t used = strlen(to->pointer), room = sizeof to->pointer - 3;
+  if (used >= room) {
+    return false;
+  }
+  to->pointer[used++] = '/';
+  for (; *key; key++) {
+    if (used >= room) {
+      return false;
+    }
+    if (*key == '~' || *key == '/') {
+      to->pointer[used++] = '~';
+      to->pointer[used++] = *key == '~' ? '0' : '1';
+    } else {
+      to->pointer[used++] = *key;
+    }
+  }
+  to->pointer[used] = '\0';
+  return true;
+}
+
+static enum status flatten_value(struct flattening *to, const json_t *value);
+
+static enum status flatten_child(struct flattening *to, const char *key, const json_t *child) {
+  size_t used = strlen(to->pointer);
+  enum status status = STATUS_OK;
+  if (pointer_push(to, key)) {
+    status = flatten_value(to, child);
+  }
+  to->pointer[used] = '\0';
+  return status;
+}
+
+/* The parser has bounded the depth of the document, and with it this recursion. */
+static enum status flatten_value(struct flattening *to, const json_t *value) {
+  enum status status = STATUS_OK;
+  if (json_is_object(value)) {
+    const char *key;
+    json_t *child;
+    json_object_foreach((json_t *)value, key, child) {
+      bool about_people = to->pointer[0] == '\0' &&
+                          (strcmp(key, "name") == 0 || strcmp(key, "labels") == 0);
+      if (!about_people && status == STATUS_OK) {
+        status = flatten_child(to, key, child);
+      }
+    }
+  } else if (json_is_array(value)) {
+    for (size_t i = 0; i < json_array_size(value) && status == STATUS_OK; i++) {
+      char index[24];
+      snprintf(index, sizeof index, "%zu", i);
+      status = flatten_child(to, index, json_array_get(value, i));
+    }
+  } else {
+    status = flatten_leaf(to, value);
+  }
+  return status;
+}
+
+enum status flatten_store(sqlite3 *db, int64_t job_id, const json_t *root,
+                          const struct units *units, struct error *error) {
+  struct flattening to = {.db = db, .job_id = job_id, .units = units, .error = error};
+  enum status status =
+      sql_prepare(db, &to.insert, error,
+                  "INSERT OR REPLACE INTO design_parameter (job_id, pointer, value, text, unit) "
+                  "VALUES (?, ?, ?, ?, ?)",
+                  "");
+  if (status == STATUS_OK) {
+    status = flatten_value(&to, root);
+    sqlite3_finalize(to.insert);
+  }
+  return status;
+}

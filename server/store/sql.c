@@ -1,0 +1,92 @@
+#include "server/store/sql.h"
+
+#include <assert.h>
+#include <stdarg.h>
+#include <string.h>
+
+enum status sql_fail(sqlite3 *db, struct error *error) {
+  int code = sqlite3_errcode(db);
+  enum status status = STATUS_IO;
+  if (code == SQLITE_CONSTRAINT) {
+    status = STATUS_CONFLICT;
+  } else if (code == SQLITE_NOMEM) {
+    status = STATUS_NO_MEMORY;
+  }
+  return error_set(error, status, NULL, "Database: %s.", sqlite3_errmsg(db));
+}
+
+static int sql_bind(sqlite3_stmt *statement, const char *types, va_list arguments) {
+  int code = SQLITE_OK;
+  for (int i = 1; *types && code == SQLITE_OK; types++, i++) {
+    switch (*types) {
+    case 'i':
+      code = sqlite3_bind_int64(statement, i, va_arg(arguments, int64_t));
+      break;
+    case 'd':
+      code = sqlite3_bind_double(statement, i, va_arg(arguments, double));
+      break;
+    case 't':
+      code = sqlite3_bind_text(statement, i, va_arg(arguments, const char *), -1, SQLITE_STATIC);
+      break;
+    default:
+      assert(*types == 'n');
+    }
+  }
+  return code;
+}
+
+static enum status sql_prepare_list(sqlite3 *db, sqlite3_stmt **statement, struct error *error,
+                                    const char *text, const char *types, va_list arguments) {
+  *statement = NULL;
+  if (sqlite3_prepare_v2(db, text, -1, statement, NULL) != SQLITE_OK) {
+    return sql_fail(db, error);
+  }
+  if (sql_bind(*statement, types, arguments) != SQLITE_OK) {
+    enum status status = sql_fail(db, error);
+    sqlite3_finalize(*statement);
+    *statement = NULL;
+    return status;
+  }
+  return STATUS_OK;
+}
+
+enum status sql_prepare(sqlite3 *db, sqlite3_stmt **statement, struct error *error,
+                        const char *text, const char *types, ...) {
+  va_list arguments;
+  va_start(arguments, types);
+  enum status status = sql_prepare_list(db, statement, error, text, types, arguments);
+  va_end(arguments);
+  return status;
+}
+
+enum status sql_run(sqlite3 *db, struct error *error, const char *text, const char *types, ...) {
+  sqlite3_stmt *statement;
+  va_list arguments;
+  va_start(arguments, types);
+  enum status status = sql_prepare_list(db, &statement, error, text, types, arguments);
+  va_end(arguments);
+  if (status == STATUS_OK) {
+    int row;
+    status = sql_step(statement, &row, error);
+    sqlite3_finalize(statement);
+  }
+  return status;
+}
+
+enum status sql_step(sqlite3_stmt *statement, int *row, struct error *error) {
+  int code = sqlite3_step(statement);
+  *row = code == SQLITE_ROW;
+  if (code == SQLITE_ROW || code == SQLITE_DONE) {
+    return STATUS_OK;
+  }
+  return sql_fail(sqlite3_db_handle(statement), error);
+}
+
+const char *sql_text(sqlite3_stmt *statement, int column) {
+  const unsigned char *text = sqlite3_column_text(statement, column);
+  return text ? (const char *)text : "";
+}
+
+char *sql_text_copy(sqlite3_stmt *statement, int column) {
+  return strdup(sql_text(statement, column));
+}

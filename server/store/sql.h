@@ -1,0 +1,32 @@
+/* Short forms for SQLite statements. */
+#ifndef PNEULAB_STORE_SQL_H
+#define PNEULAB_STORE_SQL_H
+
+#include <sqlite3.h>
+#include <stdint.h>
+
+#include "solver/base/error.h"
+
+/* Fills *error from the connection's last error: STATUS_CONFLICT for a broken constraint,
+ * STATUS_NO_MEMORY, else STATUS_IO. */
+enum status sql_fail(sqlite3 *db, struct error *error);
+
+/* Prepares a statement and binds its parameters in order. types: one letter a parameter,
+ * i (int64_t), d (double), t (const char *, NULL binds SQL NULL), n (nothing: SQL NULL).
+ * Texts must live until the statement is finalized. On success the caller owns *statement. */
+enum status sql_prepare(sqlite3 *db, sqlite3_stmt **statement, struct error *error,
+                        const char *text, const char *types, ...);
+
+/* Prepares, binds as above and runs a statement that returns no rows. */
+enum status sql_run(sqlite3 *db, struct error *error, const char *text, const char *types, ...);
+
+/* One step. *row tells whether there is a row to read. */
+enum status sql_step(sqlite3_stmt *statement, int *row, struct error *error);
+
+/* A text column as malloc'd copy, "" for NULL; NULL only without memory. */
+char *sql_text_copy(sqlite3_stmt *statement, int column);
+
+/* A text column, "" for NULL, valid until the next step. */
+const char *sql_text(sqlite3_stmt *statement, int column);
+
+#endif

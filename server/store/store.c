@@ -1,0 +1,162 @@
+#include "server/store/store.h"
+
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "server/base/file.h"
+#include "server/store/connection.h"
+#include "server/store/sql.h"
+#include "solver/base/units.h"
+
+static enum status connection_open(const char *path, int flags, const char *settings,
+                                   sqlite3 **db, struct error *error) {
+  int code = sqlite3_open_v2(path, db, flags | SQLITE_OPEN_NOMUTEX, NULL);
+  if (!*db) {
+    return error_set(error, STATUS_NO_MEMORY, NULL, "No memory for a database connection.");
+  }
+  if (code != SQLITE_OK || sqlite3_busy_timeout(*db, 5000) != SQLITE_OK ||
+      sqlite3_db_config(*db, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL) != SQLITE_OK ||
+      sqlite3_db_config(*db, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL) != SQLITE_OK ||
+      sqlite3_exec(*db, settings, NULL, NULL, NULL) != SQLITE_OK) {
+    return error_set(error, STATUS_IO, NULL, "Cannot open the database %s: %s.", path,
+                     sqlite3_errmsg(*db));
+  }
+  return STATUS_OK;
+}
+
+enum status store_open(const char *directory, struct store **store, struct error *error) {
+  char path[PATH_MAX];
+  *store = NULL;
+  struct store *opened = calloc(1, sizeof *opened);
+  if (!opened) {
+    return error_set(error, STATUS_NO_MEMORY, NULL, "No memory for the store.");
+  }
+  pthread_mutex_init(&opened->writer_mutex, NULL);
+  pthread_mutex_init(&opened->reader_mutex, NULL);
+  pthread_cond_init(&opened->reader_free, NULL);
+  snprintf(path, sizeof path, "%s/pneulab.db", directory);
+  enum status status = file_make_directory(directory, error);
+  if (status == STATUS_OK) {
+    status = units_create(&opened->units, error);
+  }
+  if (status == STATUS_OK) {
+    status = connection_open(path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE,
+                             "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;"
+                             "PRAGMA foreign_keys = ON; PRAGMA mmap_size = 0;",
+                             &opened->writer, error);
+  }
+  if (status == STATUS_OK) {
+    status = store_migrate(opened->writer, error);
+  }
+  for (int i = 0; i < STORE_READERS && status == STATUS_OK; i++) {
+    status = connection_open(path, SQLITE_OPEN_READWRITE,
+                             "PRAGMA query_only = ON; PRAGMA mmap_size = 0;", &opened->readers[i],
+                             error);
+  }
+  if (status != STATUS_OK) {
+    store_close(opened);
+    return status;
+  }
+  *store = opened;
+  return STATUS_OK;
+}
+
+void store_close(struct store *store) {
+  if (!store) {
+    return;
+  }
+  for (int i = 0; i < STORE_READERS; i++) {
+    sqlite3_close(store->readers[i]);
+  }
+  sqlite3_close(store->writer);
+  units_destroy(store->units);
+  pthread_cond_destroy(&store->reader_free);
+  pthread_mutex_destroy(&store->reader_mutex);
+  pthread_mutex_destroy(&store->writer_mutex);
+  free(store);
+}
+
+static int reader_find_free(const struct store *store) {
+  for (int i = 0; i < STORE_READERS; i++) {
+    if (!store->reader_busy[i]) {
+      return i;
+    }
+  }
+  return -1;
+}
+
+static void reader_release(struct store *store, const sqlite3 *reader) {
+  pthread_mutex_lock(&store->reader_mutex);
+  for (int i = 0; i < STORE_READERS; i++) {
+    if (store->readers[i] == reader) {
+      store->reader_busy[i] = false;
+    }
+  }
+  pthread_cond_signal(&store->reader_free);
+  pthread_mutex_unlock(&store->reader_mutex);
+}
+
+sqlite3 *store_read_begin(struct store *store, struct error *error) {
+  pthread_mutex_lock(&store->reader_mutex);
+  int found;
+  while ((found = reader_find_free(store)) < 0) {
+    pthread_cond_wait(&store->reader_free, &store->reader_mutex);
+  }
+  store->reader_busy[found] = true;
+  sqlite3 *reader = store->readers[found];
+  pthread_mutex_unlock(&store->reader_mutex);
+  if (sqlite3_exec(reader, "BEGIN", NULL, NULL, NULL) != SQLITE_OK) {
+    sql_fail(reader, error);
+    reader_release(store, reader);
+    return NULL;
+  }
+  return reader;
+}
+
+void store_read_end(struct store *store, sqlite3 *reader) {
+  sqlite3_exec(reader, "ROLLBACK", NULL, NULL, NULL);
+  reader_release(store, reader);
+}
+
+enum status store_write_begin(struct store *store, struct error *error) {
+  pthread_mutex_lock(&store->writer_mutex);
+  if (sqlite3_exec(store->writer, "BEGIN IMMEDIATE", NULL, NULL, NULL) != SQLITE_OK) {
+    enum status status = sql_fail(store->writer, error);
+    pthread_mutex_unlock(&store->writer_mutex);
+    return status;
+  }
+  return STATUS_OK;
+}
+
+enum status store_write_end(struct store *store, enum status status, struct error *error) {
+  if (status == STATUS_OK &&
+      sqlite3_exec(store->writer, "COMMIT", NULL, NULL, NULL) != SQLITE_OK) {
+    status = sql_fail(store->writer, error);
+  }
+  if (status != STATUS_OK) {
+    sqlite3_exec(store->writer, "ROLLBACK", NULL, NULL, NULL);
+  }
+  pthread_mutex_unlock(&store->writer_mutex);
+  return status;
+}
+
+enum status store_no_job(int64_t id, struct error *error) {
+  return error_set(error, STATUS_NOT_FOUND, NULL, "There is no job %lld.", (long long)id);
+}
+
+enum status store_state_of(sqlite3 *db, int64_t id, enum job_state *state, struct error *error) {
+  sqlite3_stmt *statement;
+  enum status status =
+      sql_prepare(db, &statement, error, "SELECT state FROM job WHERE id = ?", "i", id);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  int row = 0;
+  status = sql_step(statement, &row, error);
+  if (status == STATUS_OK && (!row || !job_state_parse(sql_text(statement, 0), state))) {
+    status = store_no_job(id, error);
+  }
+  sqlite3_finalize(statement);
+  return status;
+}

@@ -1,0 +1,186 @@
+/* The results database: one SQLite file, of which the daemon is the only writer.
+ *
+ * All writes go through one connection behind a mutex; each function that writes is one durable
+ * transaction (WAL, synchronous=FULL). Reads use a small set of query_only connections. Every
+ * function may be called from any thread. Failures of the database are STATUS_IO or
+ * STATUS_NO_MEMORY and leave it unchanged. */
+#ifndef PNEULAB_STORE_STORE_H
+#define PNEULAB_STORE_STORE_H
+
+#include <jansson.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "server/store/state.h"
+#include "solver/base/error.h"
+
+struct store;
+
+enum {
+  STORE_FAILURES_MAX = 2,  /* lost workers after which one more failure is final */
+  STORE_ATTEMPTS_MAX = 10, /* attempts of one job, for whatever reason they ended */
+  STORE_LABELS_MAX = 8     /* label filters of one list query */
+};
+
+/* Opens or creates DIR/pneulab.db and brings its schema up to date. A database of a newer program
+ * is refused with STATUS_CONFLICT. The caller owns *store. */
+enum status store_open(const char *directory, struct store **store, struct error *error);
+void store_close(struct store *store);
+
+/* ---- submitting -------------------------------------------------------------------------- */
+
+struct submission {
+  const char *document;        /* the job as text */
+  const json_t *root;          /* the same, parsed: an object */
+  const char *spec_hash;       /* 64 hex digits */
+  double timeout_s;            /* 0: none */
+  const char *idempotency_key; /* or NULL */
+  int64_t retry_of;            /* or 0 */
+};
+
+/* Makes the job durable in state queued and stores its id. When the idempotency key is known,
+ * nothing is written and *replayed is set: *id is then the earlier job, or the answer is
+ * STATUS_CONFLICT if that one had another document. */
+enum status store_submit(struct store *store, const struct submission *submission, int64_t *id,
+                         bool *replayed, struct error *error);
+
+/* Removes a terminal job with its attempts and results. STATUS_NOT_FOUND, or STATUS_CONFLICT
+ * while the job is not terminal. Its files are the caller's to remove. */
+enum status store_delete(struct store *store, int64_t id, struct error *error);
+
+/* Asks for the end of a job: one that waits becomes cancelled, one that runs cancelling.
+ * *state: the state reached. STATUS_NOT_FOUND, or STATUS_CONFLICT for a terminal job. */
+enum status store_cancel(struct store *store, int64_t id, enum job_state *state,
+                         struct error *error);
+
+/* Takes a waiting job out of the queue (hold) or puts it back. STATUS_NOT_FOUND, or
+ * STATUS_CONFLICT when the job is not queued (not held). */
+enum status store_hold(struct store *store, int64_t id, bool hold, struct error *error);
+
+/* ---- attempts ---------------------------------------------------------------------------- */
+
+struct claim {
+  int64_t job_id;
+  int64_t attempt;
+  double timeout_s;
+  char *document; /* malloc'd, owned by the holder of the claim */
+};
+
+/* Takes the oldest job that may start, makes it `starting` under a new attempt number and fills
+ * *claim; *claimed is false when none waits. */
+enum status store_claim(struct store *store, struct claim *claim, bool *claimed,
+                        struct error *error);
+
+/* The worker of an attempt runs: starting -> running. STATUS_CONFLICT when the attempt is no
+ * longer the job's latest or the job is being cancelled. */
+enum status store_attempt_running(struct store *store, int64_t job_id, int64_t attempt,
+                                  int64_t pid, struct error *error);
+
+/* How an attempt ended. */
+enum attempt_end {
+  ATTEMPT_SUCCEEDED, /* with a result */
+  ATTEMPT_FAILED,    /* for good, with or without a result */
+  ATTEMPT_TIMED_OUT, /* with or without a result */
+  ATTEMPT_CANCELLED, /* on request */
+  ATTEMPT_WORKER_LOST, /* killed or broke the contract: again, or failed when too often */
+  ATTEMPT_REQUEUED   /* the daemon shuts down: back into the queue */
+};
+
+struct attempt_outcome {
+  int64_t job_id, attempt;
+  enum attempt_end end;
+  const char *reason_code; /* "" for success */
+  const char *message;
+  int exit_code;      /* -1: a signal ended the worker, or it never ran */
+  int signal;         /* 0: none */
+  double cpu_s;
+  double peak_memory_MB;
+  int64_t retry_delay_ms;    /* for ATTEMPT_WORKER_LOST; doubled with every failure */
+  const char *result_text;   /* the result document, or NULL */
+  const json_t *result;      /* the same, parsed and checked */
+  const char *directory;     /* of its artifacts, relative to the data directory */
+  const json_t *artifacts;   /* object: file name -> size in bytes */
+};
+
+/* Ends an attempt: result, metrics, samples, artifacts and the change of state in one
+ * transaction. A job that is being cancelled becomes cancelled whatever the outcome says. *state:
+ * the state reached. STATUS_CONFLICT, with nothing written, when the attempt is not the job's
+ * latest or has ended before. */
+enum status store_attempt_finish(struct store *store, const struct attempt_outcome *outcome,
+                                 enum job_state *state, struct error *error);
+
+/* After a start: attempts that an earlier daemon left open are marked lost; their jobs are queued
+ * again, those being cancelled become cancelled, those out of attempts failed. *count: such
+ * jobs. */
+enum status store_recover(struct store *store, int64_t *count, struct error *error);
+
+/* ---- reading ----------------------------------------------------------------------------- */
+
+/* One job as read. Strings and JSON values are owned by the record. */
+struct job_record {
+  int64_t id;
+  enum job_state state;
+  char *reason_code, *message, *kind, *name, *spec_hash;
+  int64_t attempt;
+  int64_t retry_of; /* 0: none */
+  int64_t created_ms, started_ms, finished_ms; /* 0: not yet */
+  bool has_result;
+  json_t *labels;    /* object of strings */
+  json_t *metrics;   /* object of numbers, empty before there is a result */
+  json_t *artifacts; /* array of file names */
+};
+
+void job_record_clear(struct job_record *record);
+
+/* Reads one job. STATUS_NOT_FOUND. On success the caller clears *record. */
+enum status store_job(struct store *store, int64_t id, struct job_record *record,
+                      struct error *error);
+
+struct list_query {
+  bool states[JOB_STATE_COUNT]; /* wanted states; none set: all */
+  const char *kind;             /* or NULL */
+  struct {
+    const char *name, *value;
+  } labels[STORE_LABELS_MAX];
+  size_t label_count;
+  enum { LIST_BY_ID, LIST_BY_CREATED, LIST_BY_FINISHED, LIST_BY_NAME, LIST_BY_STATE } sort;
+  bool descending;
+  int64_t cursor; /* id of the last job of the page before, 0: first page */
+  int limit;      /* jobs a page, at least 1 */
+};
+
+/* One page. *records: malloc'd array of *count, each to be cleared, then freed. *next: the cursor
+ * of the next page, 0 when this is the last. STATUS_NOT_FOUND when the cursor's job is gone. */
+enum status store_list(struct store *store, const struct list_query *query,
+                       struct job_record **records, size_t *count, int64_t *next,
+                       struct error *error);
+
+/* The job document as submitted, malloc'd. STATUS_NOT_FOUND. */
+enum status store_document(struct store *store, int64_t id, char **text, struct error *error);
+
+/* The result document and (unless NULL) the folder of its artifacts relative to the data
+ * directory, malloc'd. STATUS_NOT_FOUND when there is no result. */
+enum status store_result(struct store *store, int64_t id, char **text, char **directory,
+                         struct error *error);
+
+/* STATUS_OK when the job has an artifact of that name; else STATUS_NOT_FOUND. */
+enum status store_artifact(struct store *store, int64_t id, const char *name,
+                           struct error *error);
+
+/* The attempts of a job: array of objects. The caller owns *attempts. */
+enum status store_attempts(struct store *store, int64_t id, json_t **attempts,
+                           struct error *error);
+
+/* The samples of a job: array of objects name -> number, one a step. The caller owns it. */
+enum status store_samples(struct store *store, int64_t id, json_t **samples,
+                          struct error *error);
+
+/* The design parameters of a job: object pointer -> { value, text, unit }. */
+enum status store_parameters(struct store *store, int64_t id, json_t **parameters,
+                             struct error *error);
+
+/* Number of jobs in each state. */
+enum status store_counts(struct store *store, int64_t counts[JOB_STATE_COUNT],
+                         struct error *error);
+
+#endif
