@@ -224,7 +224,7 @@ static double ogden_law(const struct material_spec *material, const struct kinem
   memset(tangent, 0, 81 * sizeof *tangent);
   for (int a = 0; a < 3; a++) {
     for (int b = 0; b < 3; b++) {
-      double near = fabs(l2[a] - l2[b]) < 1e-6 * (l2[a] + l2[b]);
+      bool near = fabs(l2[a] - l2[b]) < 1e-6 * (l2[a] + l2[b]);
       double shear = near ? 0.5 * (d[b][b] - d[a][b]) : (s[b] - s[a]) / (l2[b] - l2[a]);
       for (int p = 0; p < 9; p++) {
         int i = p / 3, j = p % 3;

@@ -57,13 +57,13 @@ struct pneunet_spec {
   int run_count;
   int chamber_count;
   double chamber_gap;
-  double side_wall;    /* thickness of the walls at y = +-width/2 */
-  double gap_wall;     /* axial walls, facing gaps and at both ends */
+  double side_wall; /* thickness of the walls at y = +-width/2 */
+  double gap_wall;  /* axial walls, facing gaps and at both ends */
   double top_wall;
   double bottom_layer;
-  double slit;         /* height of the slit under a chamber of configuration C */
-  double slit_floor;   /* thickness of the floor of a chamber of configuration C */
-  double stem;         /* half width of the stem of configuration C */
+  double slit;       /* height of the slit under a chamber of configuration C */
+  double slit_floor; /* thickness of the floor of a chamber of configuration C */
+  double stem;       /* half width of the stem of configuration C */
   bool has_channel;
   double channel_width, channel_height, channel_cover;
   double taper_top, taper_bottom, taper_left, taper_right;
@@ -100,8 +100,8 @@ struct job_spec {
   bool contact;
   bool half_model; /* symmetric about y = 0 in geometry and load */
   enum accuracy accuracy;
-  double timeout_s;  /* 0: none */
-  char hash[65];     /* SHA-256 of the canonical job text (sorted keys, name and labels left out) */
+  double timeout_s; /* 0: none */
+  char hash[65];    /* SHA-256 of the canonical job text (sorted keys, name and labels left out) */
 };
 
 /* Reads and checks a job document.
