@@ -1,0 +1,74 @@
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "server/plot/data.h"
+#include "server/plot/draw.h"
+
+struct texts {
+  char name[DATA_HEADING];
+  char detail[80];
+};
+
+/* "1.27 °/kPa" and a word when the curve ends early; "" when neither is known. */
+static void describe(const json_t *result, char *text, size_t size) {
+  char notice[DATA_HEADING], number[TICKS_TEXT];
+  double slope = data_number(json_object_get(result, "metrics"), "sensitivity_deg_per_kPa");
+  if (!isfinite(slope)) {
+    slope = data_number(json_object_get(result, "fit"), "slope_deg_per_kPa");
+  }
+  data_notice(result, notice);
+  ticks_number(slope, 3, number);
+  if (isfinite(slope)) {
+    snprintf(text, size, "%s °/kPa%s", number, *notice ? ", stopped early" : "");
+  } else {
+    snprintf(text, size, "%s", *notice ? "stopped early" : "");
+  }
+}
+
+enum status draw_overlay(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                         struct error *error) {
+  enum status status = STATUS_OK;
+  struct chart_series series[DRAW_OVERLAY_LIMIT];
+  struct point *points[DRAW_OVERLAY_LIMIT] = {NULL};
+  struct texts *texts = calloc(count, sizeof *texts);
+  if (!texts) {
+    return error_set(error, STATUS_NO_MEMORY, NULL, "memory ran out for %zu curves", count);
+  }
+  for (size_t i = 0; i < count; i++) {
+    size_t point_count;
+    status = data_samples(inputs[i].result, "pressure_kPa", "bending_angle_deg", &points[i],
+                          &point_count, error);
+    if (status != STATUS_OK) {
+      goto done;
+    }
+    data_name(&inputs[i], texts[i].name);
+    describe(inputs[i].result, texts[i].detail, sizeof texts[i].detail);
+    series[i] =
+        (struct chart_series){.points = points[i],
+                              .count = point_count,
+                              .colour = colour_series(i),
+                              .width = 2.0,
+                              .marker = (enum chart_marker)(MARKER_CIRCLE + i % (MARKER_COUNT - 1)),
+                              .dash = (enum chart_dash)(i % DASH_COUNT),
+                              .name = texts[i].name,
+                              .detail = texts[i].detail};
+  }
+  char subtitle[64];
+  snprintf(subtitle, sizeof subtitle, count == 1 ? "1 job" : "%zu jobs", count);
+  struct chart chart = {.title = "Bending angle against pressure",
+                        .subtitle = subtitle,
+                        .x_label = "Pressure (kPa)",
+                        .y_label = "Bending angle (°)",
+                        .from_zero = true,
+                        .series = series,
+                        .series_count = count,
+                        .empty = "None of the jobs has samples"};
+  chart_draw(&chart, canvas);
+done:
+  for (size_t i = 0; i < count; i++) {
+    free(points[i]);
+  }
+  free(texts);
+  return status;
+}

@@ -1,0 +1,32 @@
+/* Pictures of results, as PNG. Every function is safe to call from several threads at once. */
+#ifndef PNEULAB_PLOT_PLOT_H
+#define PNEULAB_PLOT_PLOT_H
+
+#include <jansson.h>
+#include <stddef.h>
+#include "solver/base/error.h"
+
+/* One job to draw. The caller keeps everything alive during plot_render. */
+struct plot_input {
+  const json_t *result;      /* the result document */
+  const char *artifacts_dir; /* folder of the job's files, or NULL */
+  const char *title;         /* the job's name in UTF-8 of any length, or NULL */
+  long long job_id;          /* 0: unknown, left out */
+  const char *spec_hash;     /* written into the file as text, or NULL */
+};
+
+/* Names of the plots drawable from one job of a kind, NULL-terminated; for an unknown kind the
+ * list is empty. Static storage. "overlay", the plot of several jobs, is not among them. */
+const char *const *plot_names(const char *kind);
+
+/* Draws `plot`: one of plot_names() from inputs[0], or "overlay" from all inputs.
+ * width, height: pixels, 200 to 4000 each.
+ * On success *png (allocated with malloc, the caller frees it) holds *size bytes.
+ * A result without samples gives a picture that says so.
+ * Errors: STATUS_NOT_FOUND (no such plot, or the job left no file to draw it from),
+ * STATUS_INVALID (size, number of inputs), STATUS_SYNTAX (a damaged artifact),
+ * STATUS_TOO_LARGE, STATUS_NO_MEMORY, STATUS_IO. */
+enum status plot_render(const char *plot, const struct plot_input *inputs, size_t count, int width,
+                        int height, unsigned char **png, size_t *size, struct error *error);
+
+#endif
