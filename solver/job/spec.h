@@ -49,10 +49,10 @@ enum { CHAMBER_RUNS_MAX = 32, CHAMBERS_MAX = 64 };
 
 /* All lengths in m, angles in rad. x runs from the fixed base, y across (left is +y), z up. */
 struct pneunet_spec {
-  double length;        /* derived when the job gives chamber_length */
-  double cavity_length; /* axial; length = sum of walls, cavities and gaps */
-  double width;         /* at the base */
-  double height_base, height_tip;
+  double length;                  /* derived when the job gives chamber_length */
+  double cavity_length;           /* axial; length = sum of walls, cavities and gaps */
+  double width;                   /* at the base */
+  double height_base, height_tip; /* before the tapers; both tapers are 0 when they differ */
   struct chamber_run runs[CHAMBER_RUNS_MAX];
   int run_count;
   int chamber_count;
@@ -104,10 +104,23 @@ struct job_spec {
   char hash[65];    /* SHA-256 of the canonical job text (sorted keys, name and labels left out) */
 };
 
+/* What every reading of a job needs: unit database and schema. One reader may be used by several
+ * threads at once. */
+struct job_reader;
+
+/* Creates a reader (some 10 ms) in *reader, owned by the caller. STATUS_IO when the unit database
+ * cannot be read, STATUS_NO_MEMORY, STATUS_INTERNAL. */
+enum status job_reader_create(struct job_reader **reader, struct error *error);
+void job_reader_destroy(struct job_reader *reader);
+
+/* job_spec_read with a reader that is kept for the next job. */
+enum status job_reader_read(const struct job_reader *reader, const char *text, size_t size,
+                            struct job_spec *spec, struct error *error);
+
 /* Reads and checks a job document.
  * text: JSON of `size` bytes. On success fills *spec and returns STATUS_OK; otherwise fills
- * *error (pointer; line and column for syntax errors) and returns STATUS_SYNTAX, INVALID,
- * GEOMETRY or TOO_LARGE. Nothing is kept or owned. */
+ * *error (pointer, line and column) and returns STATUS_SYNTAX, INVALID, GEOMETRY or TOO_LARGE;
+ * or the failures of job_reader_create. Nothing is kept or owned. */
 enum status job_spec_read(const char *text, size_t size, struct job_spec *spec,
                           struct error *error);
 

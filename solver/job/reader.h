@@ -1,0 +1,45 @@
+/* Inside of the job reader: typed access to members of a document that the schema has accepted. */
+#ifndef PNEULAB_JOB_READER_H
+#define PNEULAB_JOB_READER_H
+
+#include <jansson.h>
+#include "solver/base/units.h"
+#include "solver/job/spec.h"
+
+/* Smallest extent of a cavity in any direction, in m: thinner ones are taken for mistakes. */
+#define CAVITY_MINIMUM 1e-4
+
+struct reader {
+  const struct units *units;
+  struct error *error;
+};
+
+/* The quantity `text` in SI, `unit` as in the schema. */
+double reader_quantity(const struct reader *reader, const json_t *text, const char *unit);
+
+/* The quantity under `key` in SI, or `otherwise` when it is absent. */
+double reader_member(const struct reader *reader, const json_t *object, const char *key,
+                     const char *unit, double otherwise);
+
+/* The whole number under `key`, or `otherwise` when it is absent. */
+int reader_count(const json_t *object, const char *key, int otherwise);
+
+/* Copies a string value into a field, cut at whole characters; NULL counts as "". */
+void reader_copy(char *field, size_t size, const char *text);
+
+/* Each fills its part of the spec from the actuator or material value. STATUS_OK, or
+ * STATUS_INVALID or STATUS_GEOMETRY with the pointer to the member that has to change. */
+enum status reader_pneunet(const struct reader *reader, const json_t *actuator,
+                           struct pneunet_spec *spec);
+enum status reader_material(const struct reader *reader, const json_t *material,
+                            struct material_spec *spec);
+
+/* Whether a body of these dimensions can exist. STATUS_OK, or STATUS_GEOMETRY with the pointer
+ * to the dimension that has to change, the reason and the limit. */
+enum status pneunet_check(const struct pneunet_spec *spec, struct error *error);
+
+/* SHA-256 of the canonical text of the document (sorted keys, no spaces, whole reals as integers)
+ * without name, labels and comments, as 64 hexadecimal digits. STATUS_OK or STATUS_NO_MEMORY. */
+enum status job_hash(const json_t *document, char hash[65], struct error *error);
+
+#endif

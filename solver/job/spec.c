@@ -1,0 +1,202 @@
+#include "solver/job/spec.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "solver/base/text.h"
+#include "solver/job/json.h"
+#include "solver/job/reader.h"
+#include "solver/job/schema.h"
+
+struct job_reader {
+  struct units *units;
+  struct schema *schema;
+};
+
+enum status job_reader_create(struct job_reader **reader, struct error *error) {
+  struct job_reader *created = calloc(1, sizeof *created);
+  if (!created) {
+    return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the job reader");
+  }
+  size_t size = 0;
+  const char *text = job_schema_text(&size);
+  enum status status = units_create(&created->units, error);
+  if (status == STATUS_OK) {
+    status = schema_create(text, size, created->units, &created->schema, error);
+  }
+  if (status != STATUS_OK) {
+    job_reader_destroy(created);
+    return status;
+  }
+  *reader = created;
+  return STATUS_OK;
+}
+
+void job_reader_destroy(struct job_reader *reader) {
+  if (!reader) {
+    return;
+  }
+  schema_destroy(reader->schema);
+  units_destroy(reader->units);
+  free(reader);
+}
+
+/* ---- typed access ----------------------------------------------------------------------- */
+
+double reader_quantity(const struct reader *reader, const json_t *text, const char *unit) {
+  double si = 0.0;
+  if (json_is_string(text)) {
+    enum status status =
+        units_read(reader->units, json_string_value(text), unit, &si, reader->error);
+    assert(status == STATUS_OK); /* the schema has accepted the text */
+    (void)status;
+  }
+  return si;
+}
+
+double reader_member(const struct reader *reader, const json_t *object, const char *key,
+                     const char *unit, double otherwise) {
+  const json_t *member = json_object_get(object, key);
+  return member ? reader_quantity(reader, member, unit) : otherwise;
+}
+
+int reader_count(const json_t *object, const char *key, int otherwise) {
+  const json_t *member = json_object_get(object, key);
+  return member ? (int)json_number_value(member) : otherwise;
+}
+
+void reader_copy(char *field, size_t size, const char *text) {
+  size_t length = text ? text_prefix(text, size - 1) : 0;
+  if (length > 0) {
+    memcpy(field, text, length);
+  }
+  field[length] = '\0';
+}
+
+/* ---- parts of a response job ------------------------------------------------------------ */
+
+static void read_load(const struct reader *reader, const json_t *load, struct load_spec *spec) {
+  const json_t *pressure = json_object_get(load, "pressure");
+  spec->pressure_to = reader_member(reader, pressure, "to", "kPa", 0.0);
+  spec->steps = reader_count(pressure, "steps", 0);
+  const json_t *gravity = json_object_get(load, "gravity");
+  for (size_t i = 0; i < 3; i++) {
+    spec->gravity[i] = reader_quantity(reader, json_array_get(gravity, i), "m/s2");
+  }
+}
+
+static void read_mesh(const json_t *mesh, struct mesh_spec *spec) {
+  spec->gap_wall = reader_count(mesh, "gap_wall", 0);
+  spec->cavity = reader_count(mesh, "cavity", 0);
+  spec->gap = reader_count(mesh, "gap", 0);
+  spec->half_width = reader_count(mesh, "half_width", 0);
+  spec->side_wall = reader_count(mesh, "side_wall", 0);
+  spec->bottom = reader_count(mesh, "bottom", 0);
+  spec->height = reader_count(mesh, "height", 0);
+  spec->top = reader_count(mesh, "top", 0);
+}
+
+static enum status read_range(const struct reader *reader, const json_t *metrics, const char *key,
+                              double pressure_to, double *from, double *to) {
+  const json_t *range = json_object_get(metrics, key);
+  *from = 0.0;
+  *to = pressure_to;
+  if (!range) {
+    return STATUS_OK;
+  }
+  struct json_pointer pointer = {.length = 0};
+  json_pointer_key(&pointer, "metrics");
+  json_pointer_key(&pointer, key);
+  *from = reader_quantity(reader, json_array_get(range, 0), "kPa");
+  *to = reader_quantity(reader, json_array_get(range, 1), "kPa");
+  if (*from >= *to) {
+    return error_set(reader->error, STATUS_INVALID, pointer.text,
+                     "the range must rise: %.6g kPa is not below %.6g kPa; for example "
+                     "[\"0 kPa\", \"%.6g kPa\"]",
+                     *from / 1e3, *to / 1e3, pressure_to / 1e3);
+  }
+  if (*to > pressure_to * (1.0 + 1e-9)) {
+    return error_set(reader->error, STATUS_INVALID, pointer.text,
+                     "the range ends at %.6g kPa, beyond the load, which ends at %.6g kPa",
+                     *to / 1e3, pressure_to / 1e3);
+  }
+  return STATUS_OK;
+}
+
+static enum accuracy read_accuracy(const char *word) {
+  return strcmp(word, "fast") == 0   ? ACCURACY_FAST
+         : strcmp(word, "fine") == 0 ? ACCURACY_FINE
+                                     : ACCURACY_STANDARD;
+}
+
+/* The document has passed the schema and its defaults are filled in. */
+static enum status read_response(const struct reader *reader, const json_t *document,
+                                 struct job_spec *spec) {
+  spec->kind = JOB_RESPONSE;
+  reader_copy(spec->name, sizeof spec->name, json_string_value(json_object_get(document, "name")));
+  spec->contact = json_is_true(json_object_get(document, "contact"));
+  spec->accuracy = read_accuracy(json_string_value(json_object_get(document, "accuracy")));
+  spec->timeout_s = reader_member(reader, document, "timeout", "s", 0.0);
+  read_load(reader, json_object_get(document, "load"), &spec->load);
+  read_mesh(json_object_get(document, "mesh"), &spec->mesh);
+  const json_t *metrics = json_object_get(document, "metrics");
+  double to = spec->load.pressure_to;
+  enum status status =
+      read_range(reader, metrics, "fit_range", to, &spec->metrics.fit_from, &spec->metrics.fit_to);
+  if (status == STATUS_OK) {
+    status = read_range(reader, metrics, "cai_range", to, &spec->metrics.cai_from,
+                        &spec->metrics.cai_to);
+  }
+  if (status == STATUS_OK) {
+    status = reader_material(reader, json_object_get(document, "material"), &spec->material);
+  }
+  if (status == STATUS_OK) {
+    status = reader_pneunet(reader, json_object_get(document, "actuator"), &spec->pneunet);
+  }
+  spec->half_model =
+      spec->pneunet.taper_left == spec->pneunet.taper_right && spec->load.gravity[1] == 0.0;
+  return status;
+}
+
+/* ---- the whole document ----------------------------------------------------------------- */
+
+enum status job_reader_read(const struct job_reader *reader, const char *text, size_t size,
+                            struct job_spec *spec, struct error *error) {
+  json_t *document = NULL;
+  struct error ignored;
+  error = error ? error : &ignored;
+  struct reader inner = {reader->units, error};
+  *spec = (struct job_spec){.kind = JOB_RESPONSE};
+  enum status status = json_text_read(text, size, &document, error);
+  if (status != STATUS_OK) {
+    goto done;
+  }
+  status = schema_check(reader->schema, document, error);
+  if (status == STATUS_OK) {
+    status = schema_fill(reader->schema, document, error);
+  }
+  if (status == STATUS_OK) {
+    status = read_response(&inner, document, spec);
+  }
+  if (status == STATUS_OK) {
+    status = job_hash(document, spec->hash, error);
+  }
+  if (status != STATUS_OK) {
+    json_text_locate(text, size, error->pointer, &error->line, &error->column);
+  }
+done:
+  json_decref(document);
+  return status;
+}
+
+enum status job_spec_read(const char *text, size_t size, struct job_spec *spec,
+                          struct error *error) {
+  struct job_reader *reader = NULL;
+  enum status status = job_reader_create(&reader, error);
+  if (status == STATUS_OK) {
+    status = job_reader_read(reader, text, size, spec, error);
+  }
+  job_reader_destroy(reader);
+  return status;
+}
