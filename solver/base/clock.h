@@ -1,0 +1,10 @@
+/* Clocks. */
+#ifndef PNEULAB_BASE_CLOCK_H
+#define PNEULAB_BASE_CLOCK_H
+
+/* CPU time of the process in s. */
+double clock_cpu_s(void);
+/* Monotonic wall-clock time in s from an arbitrary start. */
+double clock_wall_s(void);
+
+#endif

@@ -1,0 +1,239 @@
+#include "solver/fe/contact.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include "solver/fe/vec3.h"
+
+/* How far beyond its edge (parent coordinate 1) a master face is continued. */
+static const double xi_limit = 1.6;
+
+enum status contact_init(struct contact *contact, const struct mesh *mesh,
+                         const struct quad9_tables *tables, struct error *error) {
+  *contact = (struct contact){.mesh = mesh, .tables = tables, .pair_count = mesh->facing_count};
+  size_t points = (size_t)mesh->facing_count * QUAD9_POINTS;
+  contact->point = calloc(points + 1, sizeof *contact->point);
+  if (!contact->point) {
+    return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for %zu contact points", points);
+  }
+  for (int p = 0; p < contact->pair_count; p++) {
+    int nodes[QUAD9_NODES];
+    mesh_face_nodes(mesh, &mesh->facing[p].slave, nodes);
+    for (int q = 0; q < QUAD9_POINTS; q++) {
+      double a[3] = {0}, b[3] = {0}, normal[3];
+      for (int m = 0; m < QUAD9_NODES; m++) {
+        for (int i = 0; i < 3; i++) {
+          a[i] += tables->dn[q][0][m] * mesh->x[3 * nodes[m] + i];
+          b[i] += tables->dn[q][1][m] * mesh->x[3 * nodes[m] + i];
+        }
+      }
+      vec3_cross(a, b, normal);
+      struct contact_point *point = &contact->point[QUAD9_POINTS * p + q];
+      point->area = tables->weight[q] * vec3_norm(normal);
+      point->xi[0] = tables->point[q][0];
+      point->xi[1] = tables->point[q][1];
+    }
+  }
+  return STATUS_OK;
+}
+
+void contact_release(struct contact *contact) {
+  free(contact->point);
+  *contact = (struct contact){0};
+}
+
+void contact_nodes(const struct contact *contact, int pair, int nodes[CONTACT_NODES]) {
+  const struct mesh_facing *facing = &contact->mesh->facing[pair];
+  mesh_face_nodes(contact->mesh, &facing->slave, nodes);
+  mesh_face_nodes(contact->mesh, &facing->master, nodes + QUAD9_NODES);
+}
+
+/* Closest-point projection onto a master face. */
+struct projection {
+  double n[QUAD9_NODES], dn[2][QUAD9_NODES];
+  double tangent[2][3];
+  double distance[3];         /* slave point - master point */
+  double c11, c12, c22;       /* Hessian of |distance|^2 / 2 in the parent coordinates */
+};
+
+static void evaluate_projection(double master[][3], const double slave[3],
+                                const double xi[2], struct projection *p) {
+  double d2n[3][QUAD9_NODES], curvature[3][3] = {{0}};
+  quad9_shape(xi[0], xi[1], p->n, p->dn, d2n);
+  memset(p->tangent, 0, sizeof p->tangent);
+  memcpy(p->distance, slave, sizeof p->distance);
+  for (int m = 0; m < QUAD9_NODES; m++) {
+    for (int i = 0; i < 3; i++) {
+      double x = master[m][i];
+      p->distance[i] -= p->n[m] * x;
+      p->tangent[0][i] += p->dn[0][m] * x;
+      p->tangent[1][i] += p->dn[1][m] * x;
+      curvature[0][i] += d2n[0][m] * x;
+      curvature[1][i] += d2n[1][m] * x;
+      curvature[2][i] += d2n[2][m] * x;
+    }
+  }
+  const double *a = p->tangent[0], *b = p->tangent[1], *d = p->distance;
+  p->c11 = vec3_dot(a, a) - vec3_dot(d, curvature[0]);
+  p->c22 = vec3_dot(b, b) - vec3_dot(d, curvature[1]);
+  p->c12 = vec3_dot(a, b) - vec3_dot(d, curvature[2]);
+}
+
+/* Newton iteration for the closest point, started at xi. False when it leaves the face. */
+static bool project(double master[][3], const double slave[3], double xi[2],
+                    struct projection *p) {
+  for (int iteration = 0; iteration < 12; iteration++) {
+    evaluate_projection(master, slave, xi, p);
+    double determinant = p->c11 * p->c22 - p->c12 * p->c12;
+    if (!(determinant > 0)) {
+      return false;
+    }
+    double r1 = vec3_dot(p->distance, p->tangent[0]), r2 = vec3_dot(p->distance, p->tangent[1]);
+    double d1 = (p->c22 * r1 - p->c12 * r2) / determinant;
+    double d2 = (p->c11 * r2 - p->c12 * r1) / determinant;
+    if (fabs(d1) + fabs(d2) < 1e-10) {
+      return fabs(xi[0]) < xi_limit && fabs(xi[1]) < xi_limit;
+    }
+    xi[0] = fmax(-2, fmin(2, xi[0] + d1));
+    xi[1] = fmax(-2, fmin(2, xi[1] + d2));
+  }
+  return false;
+}
+
+/* Traction and its negative derivative -dt/dg at gap g. */
+static double contact_law(const struct contact *contact, double lambda, double g, double *slope) {
+  double eps = contact->stiffness, delta = contact->smoothing, x = g - lambda / eps;
+  if (x >= delta) {
+    *slope = 0;
+    return 0;
+  }
+  if (x <= -delta) {
+    *slope = eps;
+    return -eps * x;
+  }
+  *slope = eps * (delta - x) / (2 * delta);
+  return eps * (delta - x) * (delta - x) / (4 * delta);
+}
+
+/* Adds area * Hessian of the potential e(g), e' = -t, e'' = slope. With D the distance vector,
+ * c the coefficients of the nodes in D and B_alpha = d(D . x,alpha)/du:
+ *   Hess(g^2/2) = c c I - B C^-1 B^T;  Hess e = e'/g Hess(g^2/2) + (e'' - e'/g) n n^T. */
+static void add_tangent(const struct projection *p, const double c[CONTACT_NODES],
+                        const double normal[3], double gap, double first, double second,
+                        double *packed) {
+  double scale = fmax(sqrt(p->c11), sqrt(p->c22));
+  double safe = fabs(gap) < 1e-7 * scale ? copysign(1e-7 * scale, gap) : gap;
+  double w1 = first / safe, w2 = second - w1;
+  double determinant = p->c11 * p->c22 - p->c12 * p->c12;
+  double b[2][CONTACT_DOFS], y[2][CONTACT_DOFS], n[CONTACT_DOFS];
+  for (int a = 0; a < CONTACT_NODES; a++) {
+    for (int i = 0; i < 3; i++) {
+      int r = 3 * a + i;
+      double d1 = a < QUAD9_NODES ? 0 : p->dn[0][a - QUAD9_NODES];
+      double d2 = a < QUAD9_NODES ? 0 : p->dn[1][a - QUAD9_NODES];
+      b[0][r] = -c[a] * p->tangent[0][i] - p->distance[i] * d1;
+      b[1][r] = -c[a] * p->tangent[1][i] - p->distance[i] * d2;
+      y[0][r] = w1 * (p->c22 * b[0][r] - p->c12 * b[1][r]) / determinant;
+      y[1][r] = w1 * (p->c11 * b[1][r] - p->c12 * b[0][r]) / determinant;
+      n[r] = c[a] * normal[i];
+    }
+  }
+  for (int r = 0; r < CONTACT_DOFS; r++) {
+    double *restrict row = packed - r;
+    double y0 = y[0][r], y1 = y[1][r], nr = w2 * n[r], cr = w1 * c[r / 3];
+#pragma omp simd
+    for (int s = r; s < CONTACT_DOFS; s++) {
+      row[s] += nr * n[s] - y0 * b[0][s] - y1 * b[1][s];
+    }
+    for (int s = r; s < CONTACT_DOFS; s += 3) {
+      row[s] += cr * c[s / 3];
+    }
+    packed += CONTACT_DOFS - r;
+  }
+}
+
+/* Slave point and projection of Gauss point q; fills gap, outward master normal, validity. */
+static void find_gap(const struct contact *contact, int pair, int q,
+                     double x[CONTACT_NODES][3], struct projection *p,
+                     struct contact_point *point, double normal[3]) {
+  const double *n = contact->tables->n[q];
+  double slave[3] = {0};
+  for (int m = 0; m < QUAD9_NODES; m++) {
+    for (int i = 0; i < 3; i++) {
+      slave[i] += n[m] * x[m][i];
+    }
+  }
+  double xi[2] = {point->xi[0], point->xi[1]};
+  point->valid = project(x + QUAD9_NODES, slave, xi, p);
+  point->traction = 0;
+  if (!point->valid) {
+    return;
+  }
+  memcpy(point->xi, xi, sizeof xi);
+  vec3_cross(p->tangent[0], p->tangent[1], normal);
+  double length = vec3_norm(normal) * contact->mesh->facing[pair].master.side;
+  for (int i = 0; i < 3; i++) {
+    normal[i] /= length;
+  }
+  point->gap = vec3_dot(p->distance, normal);
+}
+
+bool contact_evaluate(struct contact *contact, int pair, double x[CONTACT_NODES][3],
+                      double r[CONTACT_DOFS], double *packed) {
+  bool touched = false;
+  for (int q = 0; q < QUAD9_POINTS; q++) {
+    struct contact_point *point = &contact->point[QUAD9_POINTS * pair + q];
+    struct projection p;
+    double normal[3], slope;
+    find_gap(contact, pair, q, x, &p, point, normal);
+    if (!point->valid) {
+      continue;
+    }
+    point->traction = contact_law(contact, point->lambda, point->gap, &slope);
+    if (slope <= 0) {
+      continue;
+    }
+    if (!touched) {
+      memset(r, 0, CONTACT_DOFS * sizeof *r);
+      if (packed) {
+        memset(packed, 0, CONTACT_PACKED * sizeof *packed);
+      }
+      touched = true;
+    }
+    double c[CONTACT_NODES];
+    for (int m = 0; m < QUAD9_NODES; m++) {
+      c[m] = contact->tables->n[q][m];
+      c[QUAD9_NODES + m] = -p.n[m];
+    }
+    for (int a = 0; a < CONTACT_DOFS; a++) {
+      r[a] -= point->area * point->traction * c[a / 3] * normal[a % 3];
+    }
+    if (packed) {
+      add_tangent(&p, c, normal, point->gap, -point->area * point->traction, point->area * slope,
+                  packed);
+    }
+  }
+  return touched;
+}
+
+struct contact_summary contact_summarise(const struct contact *contact) {
+  struct contact_summary summary = {.min_gap = INFINITY};
+  for (int i = 0; i < contact->pair_count * QUAD9_POINTS; i++) {
+    const struct contact_point *point = &contact->point[i];
+    if (point->valid) {
+      summary.min_gap = fmin(summary.min_gap, point->gap);
+      summary.active += point->traction > 0;
+    }
+  }
+  return summary;
+}
+
+double contact_update_multipliers(struct contact *contact) {
+  double largest = 0;
+  for (int i = 0; i < contact->pair_count * QUAD9_POINTS; i++) {
+    struct contact_point *point = &contact->point[i];
+    largest = fmax(largest, fabs(point->traction - point->lambda));
+    point->lambda = point->traction;
+  }
+  return largest;
+}

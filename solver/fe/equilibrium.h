@@ -1,0 +1,46 @@
+/* Newton's method for one load: from a converged state to the state in equilibrium with the
+ * next load. */
+#ifndef PNEULAB_FE_EQUILIBRIUM_H
+#define PNEULAB_FE_EQUILIBRIUM_H
+
+#include "solver/fe/model.h"
+#include "solver/fe/retraction.h"
+
+/* Length scales and limits, filled by equilibrium_create from the mesh; open to the caller. */
+struct equilibrium_options {
+  double longest_step;   /* largest nodal increment of one iteration, m */
+  double step_tolerance; /* root mean square of the last correction, m */
+  double traction_tolerance; /* largest change of a contact multiplier at the end, Pa */
+  int max_iterations;
+  double deadline_s;     /* on clock_wall_s; 0: none */
+  bool (*cancelled)(void *context); /* may be NULL */
+  void *cancel_context;
+};
+
+struct equilibrium {
+  struct fe_model *model;
+  struct retraction *retraction;
+  struct equilibrium_options options;
+  struct fe_state saved;   /* before the increment that is being tried */
+  double *step;            /* dof_count */
+  double *chord;           /* dof_count */
+  double *increment;       /* node_count x 3 */
+  int negative_pivots;     /* of the last factorisation */
+  double last_correction;  /* rms of the last correction, m */
+  int verbose;             /* 1: a line an iteration on standard error */
+};
+
+enum status equilibrium_create(struct fe_model *model, struct equilibrium **out,
+                               struct error *error);
+void equilibrium_destroy(struct equilibrium *solver);
+
+/* Brings `state` into equilibrium with `load`; the multipliers of the state and of the contact
+ * are renewed. previous_pressure is that of the state's own equilibrium: the first iteration
+ * uses its load stiffness, which makes it the tangent predictor. Convergence is judged by the
+ * last correction, never by the residual alone, which hardly sees bending.
+ * *iterations receives the number of factorisations. Returns STATUS_OK, DIVERGED, INVERTED,
+ * TIMEOUT or CANCELLED; after a failure the state is that of the last iterate: copy before. */
+enum status equilibrium_solve(struct equilibrium *solver, const struct fe_load *load,
+                              double previous_pressure, struct fe_state *state, int *iterations);
+
+#endif

@@ -1,0 +1,94 @@
+/* A body ready to be solved: mesh, material, loads and the assembled system. */
+#ifndef PNEULAB_FE_MODEL_H
+#define PNEULAB_FE_MODEL_H
+
+#include "solver/fe/contact.h"
+#include "solver/fe/element.h"
+#include "solver/fe/ldlt.h"
+
+/* Unknowns of one equilibrium state. */
+struct fe_state {
+  double *u;      /* node_count x 3, m */
+  double *p;      /* element_count x 4, Pa */
+  double *lambda; /* contact multipliers, Pa */
+};
+
+struct fe_load {
+  double pressure;           /* on the cavity faces, Pa */
+  double stiffness_pressure; /* pressure used in the load's tangent, Pa */
+  double dead;               /* factor of the dead load */
+};
+
+/* Where the time went, CPU s. */
+struct fe_statistics {
+  int assemblies, residuals, factorizations, solves, newton_iterations;
+  double assembly_s, residual_s, factor_s, solve_s, contact_s;
+};
+
+struct fe_model {
+  const struct mesh *mesh;
+  struct material_spec material;
+  double bulk_modulus; /* Pa */
+  struct hex27_tables hex27;
+  struct quad9_tables quad9;
+  struct element_geometry *geometry; /* per element */
+  struct element_internal *internal; /* per element */
+  struct element_work *work;
+  double reference_volume; /* of the solid, m3 */
+  int *cavity_start;       /* element_count + 1, into cavity_face */
+  struct mesh_face *cavity_face;
+  double *dead_load; /* node_count x 3, N at factor 1; the caller may add to it */
+  int dof_count;
+  int *equation; /* node_count x 3, -1 where held */
+  int *node_of;  /* dof_count */
+  double *residual;         /* dof_count, N */
+  double *element_value;    /* packed tangents */
+  double *contact_value;    /* packed tangents */
+  const double **clique_value;
+  bool use_contact;
+  struct contact contact;
+  struct ldlt *ldlt;
+  struct fe_statistics statistics;
+};
+
+/* Prepares a model of `mesh`, which must outlive it. use_contact makes facing faces touch.
+ * Fails with STATUS_GEOMETRY for an element that is turned inside out, or NO_MEMORY. The caller
+ * owns *out (model_destroy). */
+enum status model_create(const struct mesh *mesh, const struct material_spec *material,
+                         bool use_contact, struct fe_model **out, struct error *error);
+void model_destroy(struct fe_model *model);
+
+/* Adds the weight of the body under gravity g (m/s2) to the dead load. */
+void model_add_gravity(struct fe_model *model, const double gravity[3]);
+
+enum status state_create(const struct fe_model *model, struct fe_state *state);
+void state_release(struct fe_state *state);
+void state_copy(const struct fe_model *model, struct fe_state *to, const struct fe_state *from);
+
+/* Residual at the state into model->residual, and with `tangent` the cliques of the tangent.
+ * The multipliers in use are those of model->contact. STATUS_INVERTED when an element has
+ * turned inside out: the residual is then not valid. */
+enum status model_evaluate(struct fe_model *model, const struct fe_state *state,
+                           const struct fe_load *load, bool tangent);
+
+/* Factorises the last tangent; returns the number of negative pivots. */
+int model_factor(struct fe_model *model);
+void model_solve(struct fe_model *model, const double *b, double *x);
+
+/* y = K x with the last evaluated tangent. */
+void model_multiply(const struct fe_model *model, const double *x, double *y);
+
+/* Adds to the element pressures the linear change that belongs to the displacement step du
+ * (dof_count); share as in element_recover. */
+void model_recover(const struct fe_model *model, struct fe_state *state, const double *du,
+                   double share);
+
+/* Volume enclosed by the cavity faces, m3 (of the modelled half for a half model). With
+ * gradient not NULL: d volume / d u, dof_count. */
+double model_volume(const struct fe_model *model, const struct fe_state *state, double *gradient);
+
+/* Displacements of an element's nodes, padded. */
+void model_gather(const struct fe_model *model, const double *u, int element,
+                  double out[3][HEX27_STRIDE]);
+
+#endif
