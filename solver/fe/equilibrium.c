@@ -1,0 +1,249 @@
+#include "solver/fe/equilibrium.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "solver/base/clock.h"
+
+enum {
+  STALL_ITERATIONS = 5, /* give up after so many without a smaller correction */
+  BACKTRACKS = 5,
+  AUGMENTATIONS = 25,
+  CHORD_STEPS = 12
+};
+
+static double body_length(const struct mesh *mesh) {
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (int n = 0; n < mesh->node_count; n++) {
+    for (int i = 0; i < 3; i++) {
+      low[i] = fmin(low[i], mesh->x[3 * n + i]);
+      high[i] = fmax(high[i], mesh->x[3 * n + i]);
+    }
+  }
+  return fmax(fmax(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
+}
+
+enum status equilibrium_create(struct fe_model *model, struct equilibrium **out,
+                               struct error *error) {
+  struct equilibrium *s = calloc(1, sizeof *s);
+  *out = NULL;
+  if (!s) {
+    return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the solver");
+  }
+  double length = body_length(model->mesh);
+  s->model = model;
+  s->options.longest_step = 0.25 * length;
+  s->options.step_tolerance = 1e-6 * length;
+  s->options.traction_tolerance = 1e-2 * material_shear_modulus(&model->material);
+  s->options.max_iterations = 30;
+  s->retraction = retraction_create(model->mesh);
+  s->step = calloc((size_t)model->dof_count + 1, sizeof *s->step);
+  s->chord = calloc((size_t)model->dof_count + 1, sizeof *s->chord);
+  s->increment = calloc(3 * (size_t)model->mesh->node_count, sizeof *s->increment);
+  if (!s->retraction || !s->step || !s->chord || !s->increment ||
+      state_create(model, &s->saved) != STATUS_OK) {
+    equilibrium_destroy(s);
+    return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the solver");
+  }
+  *out = s;
+  return STATUS_OK;
+}
+
+void equilibrium_destroy(struct equilibrium *s) {
+  if (!s) {
+    return;
+  }
+  retraction_destroy(s->retraction);
+  state_release(&s->saved);
+  free(s->step);
+  free(s->chord);
+  free(s->increment);
+  free(s);
+}
+
+/* Root mean square nodal length of a vector of unknowns. */
+static double rms(const struct equilibrium *s, const double *v) {
+  double sum = 0;
+  for (int i = 0; i < s->model->dof_count; i++) {
+    sum += v[i] * v[i];
+  }
+  return sqrt(3 * sum / s->model->dof_count);
+}
+
+static double largest(const struct equilibrium *s, const double *v) {
+  double most = 0;
+  for (int i = 0; i < s->model->dof_count; i++) {
+    most = fmax(most, fabs(v[i]));
+  }
+  return most;
+}
+
+/* state <- state (+) (-share * correction), pressures recovered alongside. */
+static void apply(struct equilibrium *s, struct fe_state *state, double *correction,
+                  double share) {
+  struct fe_model *m = s->model;
+  for (int d = 0; d < 3 * m->mesh->node_count; d++) {
+    int equation = m->equation[d];
+    s->increment[d] = equation >= 0 ? -share * correction[equation] : 0;
+  }
+  for (int i = 0; i < m->dof_count; i++) {
+    correction[i] *= -share;
+  }
+  model_recover(m, state, correction, share);
+  retraction_apply(s->retraction, state->u, s->increment);
+}
+
+static enum status check_limits(const struct equilibrium *s) {
+  const struct equilibrium_options *o = &s->options;
+  if (o->cancelled && o->cancelled(o->cancel_context)) {
+    return STATUS_CANCELLED;
+  }
+  return o->deadline_s > 0 && clock_wall_s() > o->deadline_s ? STATUS_TIMEOUT : STATUS_OK;
+}
+
+/* Applies the Newton step, shortened until no element is inverted; the residual is evaluated at
+ * the new state. *share is the part applied. */
+static enum status take_step(struct equilibrium *s, const struct fe_load *load,
+                             struct fe_state *state, double *share) {
+  struct fe_model *m = s->model;
+  double *trial = s->chord;
+  state_copy(m, &s->saved, state);
+  for (int attempt = 0; attempt < BACKTRACKS; attempt++) {
+    memcpy(trial, s->step, sizeof *trial * (size_t)m->dof_count);
+    apply(s, state, trial, *share);
+    if (model_evaluate(m, state, load, false) == STATUS_OK) {
+      return STATUS_OK;
+    }
+    *share *= 0.4;
+    state_copy(m, state, &s->saved);
+    /* The recovery needs the pressure residuals of this state again. */
+    if (model_evaluate(m, state, load, false) != STATUS_OK) {
+      break;
+    }
+  }
+  return STATUS_INVERTED;
+}
+
+/* Simplified Newton steps with the last factor while they contract. The residual belongs to the
+ * state on entry and on exit. Returns true once converged. size is the last correction's. */
+static bool polish(struct equilibrium *s, const struct fe_load *load, struct fe_state *state,
+                   double size, double first_contraction, double tolerance) {
+  struct fe_model *m = s->model;
+  double limit = first_contraction;
+  for (int k = 0; k < CHORD_STEPS; k++) {
+    model_solve(m, m->residual, s->chord);
+    double next = rms(s, s->chord);
+    if (!(next <= limit * size) && !(next < 0.1 * tolerance)) {
+      return false;
+    }
+    state_copy(m, &s->saved, state);
+    apply(s, state, s->chord, 1);
+    if (model_evaluate(m, state, load, false) != STATUS_OK) {
+      state_copy(m, state, &s->saved);
+      model_evaluate(m, state, load, false);
+      return false;
+    }
+    s->last_correction = next;
+    /* With a contraction rate the error left is rate / (1 - rate) times the last correction. */
+    double rate = fmin(next / size, 0.5);
+    if (next * rate / (1 - rate) < tolerance) {
+      return true;
+    }
+    size = next;
+    limit = 0.3;
+  }
+  return false;
+}
+
+static enum status newton(struct equilibrium *s, const struct fe_load *load,
+                          double stiffness_pressure, struct fe_state *state, int *iterations) {
+  struct fe_model *m = s->model;
+  struct fe_load tangent_load = *load;
+  tangent_load.stiffness_pressure = stiffness_pressure;
+  double best = INFINITY;
+  int best_iteration = 0;
+  for (int it = 0; it < s->options.max_iterations; it++) {
+    enum status status = check_limits(s);
+    if (status == STATUS_OK) {
+      status = model_evaluate(m, state, &tangent_load, true);
+    }
+    if (status != STATUS_OK) {
+      return status;
+    }
+    tangent_load.stiffness_pressure = load->pressure;
+    s->negative_pivots = model_factor(m);
+    model_solve(m, m->residual, s->step);
+    ++*iterations;
+    m->statistics.newton_iterations++;
+    double size = rms(s, s->step), most = largest(s, s->step);
+    if (!isfinite(size)) {
+      return STATUS_DIVERGED;
+    }
+    if (size < 0.7 * best) {
+      best = size;
+      best_iteration = it;
+    } else if (it - best_iteration >= STALL_ITERATIONS) {
+      return STATUS_DIVERGED;
+    }
+    double share = most > s->options.longest_step ? s->options.longest_step / most : 1;
+    status = take_step(s, load, state, &share);
+    if (s->verbose) {
+      struct contact_summary c = contact_summarise(&m->contact);
+      fprintf(stderr, "    it %d step %.2e share %.2f negative %d active %d gap %.3e\n", it, size,
+              share, s->negative_pivots, c.active, c.min_gap);
+    }
+    if (status != STATUS_OK) {
+      return status;
+    }
+    s->last_correction = size;
+    if (share == 1 && polish(s, load, state, size, 0.1, s->options.step_tolerance)) {
+      return STATUS_OK;
+    }
+  }
+  return STATUS_DIVERGED;
+}
+
+/* Raises the contact multipliers to the tractions until they settle; the factor stays frozen
+ * while that contracts. */
+static enum status augment(struct equilibrium *s, const struct fe_load *load,
+                           struct fe_state *state, int *iterations) {
+  struct fe_model *m = s->model;
+  for (int k = 0; k < AUGMENTATIONS; k++) {
+    double change = contact_update_multipliers(&m->contact);
+    if (s->verbose) {
+      fprintf(stderr, "    augmentation %d: change %.3e Pa, gap %.3e\n", k, change,
+              contact_summarise(&m->contact).min_gap);
+    }
+    if (change < s->options.traction_tolerance) {
+      break;
+    }
+    enum status status = model_evaluate(m, state, load, false);
+    if (status == STATUS_OK && polish(s, load, state, INFINITY, 1, s->options.step_tolerance)) {
+      continue;
+    }
+    status = newton(s, load, load->pressure, state, iterations);
+    if (status != STATUS_OK) {
+      return status;
+    }
+  }
+  return STATUS_OK;
+}
+
+enum status equilibrium_solve(struct equilibrium *s, const struct fe_load *load,
+                              double previous_pressure, struct fe_state *state, int *iterations) {
+  struct fe_model *m = s->model;
+  int points = m->contact.pair_count * QUAD9_POINTS;
+  for (int i = 0; i < points; i++) {
+    m->contact.point[i].lambda = state->lambda[i];
+  }
+  *iterations = 0;
+  enum status status = newton(s, load, previous_pressure, state, iterations);
+  if (status == STATUS_OK && m->use_contact) {
+    status = augment(s, load, state, iterations);
+  }
+  for (int i = 0; i < points; i++) {
+    state->lambda[i] = m->contact.point[i].lambda;
+  }
+  return status;
+}
