@@ -47,26 +47,23 @@ enum status draw_angle(struct canvas *canvas, const struct plot_input *inputs, s
   char subtitle[DATA_HEADING], notice[DATA_HEADING], number[TICKS_TEXT], mark_text[80];
   data_subtitle(&inputs[0], subtitle);
   data_notice(result, notice);
-  struct fit fit;
+  struct fit fit = {0};
   bool has_fit = read_fit(result, points, point_count, &fit);
-  struct chart_series series[2];
-  size_t series_count = 0;
-  if (has_fit) {
-    series[series_count++] = (struct chart_series){.points = fit.ends,
-                                                   .count = 2,
-                                                   .colour = colour_series(1),
-                                                   .width = 1.8,
-                                                   .dash = DASH_LONG,
-                                                   .name = fit.name};
-  }
-  series[series_count++] = (struct chart_series){.points = points,
-                                                 .count = point_count,
-                                                 .colour = colour_series(0),
-                                                 .width = 2.2,
-                                                 .marker = MARKER_CIRCLE,
-                                                 .name = "simulation"};
+  const struct chart_series series[] = {{.points = points,
+                                         .count = point_count,
+                                         .colour = colour_series(0),
+                                         .width = 2.2,
+                                         .marker = MARKER_CIRCLE,
+                                         .name = "simulation"},
+                                        {.points = fit.ends,
+                                         .count = has_fit ? 2 : 0,
+                                         .colour = colour_series(1),
+                                         .width = 1.8,
+                                         .dash = DASH_LONG,
+                                         .guide = true,
+                                         .name = fit.name}};
   struct point onset = {data_number(json_object_get(result, "metrics"), "contact_onset_kPa"), 0};
-  ticks_number(onset.x, 3, number);
+  ticks_plain(onset.x, 3, number);
   snprintf(mark_text, sizeof mark_text, "contact from %s kPa", number);
   struct chart chart = {.title = "Bending angle against pressure",
                         .subtitle = subtitle,
@@ -75,7 +72,7 @@ enum status draw_angle(struct canvas *canvas, const struct plot_input *inputs, s
                         .y_label = "Bending angle (°)",
                         .from_zero = true,
                         .series = series,
-                        .series_count = series_count,
+                        .series_count = sizeof series / sizeof *series,
                         .mark = isfinite(onset.x) ? &onset : NULL,
                         .mark_text = mark_text,
                         .empty = "No samples were recorded"};

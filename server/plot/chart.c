@@ -106,6 +106,9 @@ static size_t data_range(const struct chart *chart, struct frame *frame) {
   frame->x_min = frame->y_min = chart->from_zero ? 0.0 : INFINITY;
   frame->x_max = frame->y_max = chart->from_zero ? 0.0 : -INFINITY;
   for (size_t s = 0; s < chart->series_count; s++) {
+    if (chart->series[s].guide) {
+      continue;
+    }
     for (size_t i = 0; i < chart->series[s].count; i++) {
       struct point p = chart->series[s].points[i];
       frame->x_min = fmin(frame->x_min, p.x);
@@ -130,7 +133,9 @@ static size_t data_range(const struct chart *chart, struct frame *frame) {
 static void equalise(struct frame *frame) {
   double pad = 0.06;
   double dx = frame->x_max - frame->x_min, dy = frame->y_max - frame->y_min;
-  double scale = fmax(fmax(dx / frame->area.width, dy / frame->area.height) * (1 + 2 * pad), 1e-9);
+  double scale = fmax(dx / frame->area.width, dy / frame->area.height) * (1 + 2 * pad);
+  /* a single point gets one unit around it */
+  scale = fmax(scale, 1.0 / frame->area.width);
   double spare_x = (scale * frame->area.width - dx) / 2;
   double spare_y = (scale * frame->area.height - dy) / 2;
   frame->x_min -= spare_x;
@@ -170,13 +175,17 @@ static void lay_out(const struct chart *chart, struct canvas *canvas, double top
   }
 }
 
-static void draw_axes(const struct chart *chart, struct canvas *canvas, const struct frame *frame) {
+static void draw_axes(const struct chart *chart, struct canvas *canvas, const struct frame *frame,
+                      bool empty) {
   double u = canvas->unit;
   const struct box *a = &frame->area;
   double bottom = a->y + a->height, right = a->x + a->width;
   struct ticks xs = ticks_make(frame->x_min, frame->x_max, tick_target(canvas, a->width, 90));
   struct ticks ys = ticks_make(frame->y_min, frame->y_max, tick_target(canvas, a->height, 60));
   struct text_style tick = chart_style_tick(), label = chart_style_label();
+  if (empty) {
+    xs.count = ys.count = 0; /* numbers would claim a range that nothing was measured in */
+  }
   char text[TICKS_TEXT];
   for (int i = 0; i < xs.count; i++) {
     double x = frame_pixel(frame, (struct point){ticks_value(&xs, i), frame->y_min}).x;
@@ -292,51 +301,68 @@ static void draw_empty(const struct chart *chart, struct canvas *canvas, const s
   canvas_text(canvas, x, y, 0.5, 0.5, chart->empty, &style);
 }
 
+static void draw_curves(const struct chart *chart, struct canvas *canvas, const struct frame *frame,
+                        bool guides) {
+  cairo_save(canvas->cr);
+  if (guides) {
+    cairo_rectangle(canvas->cr, frame->area.x, frame->area.y, frame->area.width,
+                    frame->area.height);
+    cairo_clip(canvas->cr);
+  }
+  for (size_t i = 0; i < chart->series_count; i++) {
+    if (chart->series[i].guide == guides) {
+      legend_draw_series(canvas, frame, &chart->series[i]);
+    }
+  }
+  cairo_restore(canvas->cr);
+}
+
 /* Lays out the chart so that the legend is inside where nothing is, or else in a band above. */
-static void lay_out_with_legend(const struct chart *chart, struct canvas *canvas, double top,
-                                struct frame *frame, struct box *legend) {
+static struct legend lay_out_with_legend(const struct chart *chart, struct canvas *canvas,
+                                         double top, struct frame *frame) {
   struct frame data = *frame;
   struct place place = {0};
   double margin = 6 * canvas->unit;
   lay_out(chart, canvas, top, &data, frame);
-  legend_measure(canvas, chart, 0.62 * frame->area.width, 0.6 * frame->area.height, &legend->width,
-                 &legend->height);
+  struct legend legend =
+      legend_measure(canvas, chart, 1, 0.62 * frame->area.width, 0.6 * frame->area.height);
   add_obstacles(chart, canvas, frame, &place);
+  bool complete = legend.shown == legend.rows;
   bool inside =
-      legend->width == 0 || place_find(&place, legend->width, legend->height, margin, legend);
+      legend.rows == 0 ||
+      (complete && place_find(&place, legend.box.width, legend.box.height, margin, &legend.box));
   place_release(&place);
   if (!inside) {
-    legend_measure(canvas, chart, frame->area.width, 0.45 * frame->area.height, &legend->width,
-                   &legend->height);
-    lay_out(chart, canvas, top + legend->height, &data, frame);
-    legend->x = frame->area.x;
-    legend->y = top - 4 * canvas->unit;
+    size_t columns = chart->series_count > 4 ? 2 : 1;
+    legend = legend_measure(canvas, chart, columns, frame->area.width, 0.45 * frame->area.height);
+    lay_out(chart, canvas, top + legend.box.height, &data, frame);
+    legend.box.x = frame->area.x;
+    legend.box.y = top - 4 * canvas->unit;
   }
+  return legend;
 }
 
 void chart_draw(const struct chart *chart, struct canvas *canvas) {
   struct place place = {0};
   struct frame frame = {0};
-  struct box legend = {0};
   double top = chart_heading_height(canvas, chart->subtitle, chart->notice);
   size_t points = data_range(chart, &frame);
-  lay_out_with_legend(chart, canvas, top, &frame, &legend);
+  struct legend legend = lay_out_with_legend(chart, canvas, top, &frame);
   chart_heading(canvas, frame.area.x, chart->title, chart->subtitle, chart->notice);
-  draw_axes(chart, canvas, &frame);
+  draw_axes(chart, canvas, &frame, points == 0);
   if (points == 0) {
     draw_empty(chart, canvas, &frame.area);
   }
   add_obstacles(chart, canvas, &frame, &place);
-  if (legend.width > 0) {
-    legend_draw(canvas, chart, legend);
-    place_add_box(&place, legend);
+  if (legend.rows > 0) {
+    legend_draw(canvas, chart, &legend);
+    place_add_box(&place, legend.box);
   }
   if (chart->mark && points > 0) {
     draw_mark(chart, canvas, &frame, &place);
   }
-  for (size_t i = 0; i < chart->series_count; i++) {
-    legend_draw_series(canvas, &frame, &chart->series[i]);
-  }
+  draw_curves(chart, canvas, &frame, true);
+  draw_curves(chart, canvas, &frame, false);
   draw_labels(chart, canvas, &frame, &place);
   if (chart->bar.label) {
     double right = frame.area.x + frame.area.width + chart_bar_room(canvas, &chart->bar);

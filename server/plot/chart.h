@@ -32,6 +32,7 @@ struct chart_series {
   double width; /* of the line, design units */
   enum chart_marker marker;
   enum chart_dash dash;
+  bool guide;         /* an aid drawn below the curves: cut at the axes, whose range ignores it */
   const char *name;   /* borrowed, may be shortened; NULL: not in the legend */
   const char *detail; /* borrowed, follows the name and is never shortened; may be NULL */
 };

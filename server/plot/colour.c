@@ -44,7 +44,8 @@ struct colour colour_map_area(double t) {
 
 struct colour colour_map_line(double t) {
   static const struct colour stops[] = {
-      RGB(62, 0, 92), RGB(50, 66, 150), RGB(0, 114, 158), RGB(0, 136, 110), RGB(198, 128, 0),
+      RGB(62, 0, 92),   RGB(50, 66, 150),  RGB(0, 114, 158),
+      RGB(0, 136, 110), RGB(110, 141, 44), RGB(200, 131, 0),
   };
   return interpolate(stops, sizeof stops / sizeof *stops, t);
 }

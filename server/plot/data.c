@@ -77,7 +77,7 @@ void data_notice(const json_t *result, char text[DATA_HEADING]) {
   double reached = count ? data_number(json_array_get(samples, count - 1), "pressure_kPa") : NAN;
   if (isfinite(reached)) {
     char number[TICKS_TEXT];
-    ticks_number(reached, 3, number);
+    ticks_plain(reached, 3, number);
     snprintf(text, DATA_HEADING, "Stopped early at %s kPa: %s", number, words);
   } else {
     snprintf(text, DATA_HEADING, "Stopped early: %s", words);

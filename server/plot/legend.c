@@ -3,9 +3,8 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { SAMPLE = 28, GAP = 8, PAD = 7 }; /* design units: line sample, its distance, border */
-
-static const double line_height = 19.0;
+/* Design units: line sample, its distance from the words, border, height of a line. */
+enum { SAMPLE = 28, GAP = 8, PAD = 7, LINE = 19 };
 
 struct point frame_pixel(const struct frame *frame, struct point p) {
   double fx = (p.x - frame->x_min) / (frame->x_max - frame->x_min);
@@ -105,11 +104,6 @@ static size_t named_count(const struct chart *chart) {
   return count;
 }
 
-static size_t rows_for(struct canvas *canvas, double height) {
-  double rows = floor((height / canvas->unit - 2 * PAD) / line_height);
-  return rows < 1 ? 1 : (size_t)rows;
-}
-
 static double text_width(struct canvas *canvas, const char *text) {
   double width = 0, height;
   if (text) {
@@ -119,20 +113,30 @@ static double text_width(struct canvas *canvas, const char *text) {
   return width;
 }
 
-void legend_measure(struct canvas *canvas, const struct chart *chart, double max_width,
-                    double max_height, double *width, double *height) {
-  size_t count = named_count(chart), rows = rows_for(canvas, max_height);
-  double fixed = (2 * PAD + SAMPLE + GAP) * canvas->unit, widest = 0;
+struct legend legend_measure(struct canvas *canvas, const struct chart *chart, size_t columns,
+                             double max_width, double max_height) {
+  size_t count = named_count(chart);
+  struct legend legend = {.columns = columns};
+  if (count == 0) {
+    return legend;
+  }
+  double u = canvas->unit, widest = 0;
   for (size_t i = 0; i < chart->series_count; i++) {
     const struct chart_series *series = &chart->series[i];
     if (series->name && series->count > 0) {
-      double detail = series->detail ? text_width(canvas, series->detail) + GAP * canvas->unit : 0;
+      double detail = series->detail ? text_width(canvas, series->detail) + 2 * GAP * u : 0;
       widest = fmax(widest, ceil(text_width(canvas, series->name)) + 1 + detail);
     }
   }
-  *width = count ? fmin(fixed + widest, max_width) : 0;
-  *height =
-      count ? (2 * PAD + line_height * (double)(count < rows ? count : rows)) * canvas->unit : 0;
+  double most_rows = fmax(floor((max_height / u - 2 * PAD) / LINE), 1);
+  legend.rows = (count + columns - 1) / columns;
+  legend.rows = (double)legend.rows > most_rows ? (size_t)most_rows : legend.rows;
+  legend.shown = count <= legend.rows * columns ? count : legend.rows * columns - 1;
+  double full = (double)columns * ((SAMPLE + GAP) * u + widest) +
+                (double)(columns - 1) * 3 * GAP * u + 2 * PAD * u;
+  legend.box.width = fmin(full, max_width);
+  legend.box.height = (2 * PAD + LINE * (double)legend.rows) * u;
+  return legend;
 }
 
 /* One line of the legend; (x, y) is the middle of its left edge. */
@@ -160,26 +164,30 @@ static void draw_row(struct canvas *canvas, const struct chart_series *series, d
   }
 }
 
-void legend_draw(struct canvas *canvas, const struct chart *chart, struct box box) {
-  size_t count = named_count(chart), rows = rows_for(canvas, box.height + 0.5), row = 0;
-  double u = canvas->unit;
-  cairo_rectangle(canvas->cr, box.x, box.y, box.width, box.height);
+void legend_draw(struct canvas *canvas, const struct chart *chart, const struct legend *legend) {
+  double u = canvas->unit, between = 3 * GAP * u;
+  const struct box *box = &legend->box;
+  double columns = (double)legend->columns;
+  double width = (box->width - 2 * PAD * u - (columns - 1) * between) / columns;
+  cairo_rectangle(canvas->cr, box->x, box->y, box->width, box->height);
   canvas_set_colour(canvas, colour_paper);
   cairo_fill(canvas->cr);
-  for (size_t i = 0; i < chart->series_count && row < rows; i++) {
+  size_t place = 0, count = named_count(chart);
+  for (size_t i = 0; i < chart->series_count && place <= legend->shown; i++) {
     const struct chart_series *series = &chart->series[i];
     if (!series->name || series->count == 0) {
       continue;
     }
-    double y = box.y + (PAD + line_height * ((double)row + 0.5)) * u;
-    row++;
-    if (row == rows && count > rows) {
-      char more[64];
-      snprintf(more, sizeof more, "and %zu more", count - rows + 1);
-      struct text_style style = chart_style_tick();
-      canvas_text(canvas, box.x + (PAD + SAMPLE + GAP) * u, y, 0, 0.5, more, &style);
+    double x = box->x + PAD * u + (double)(place / legend->rows) * (width + between);
+    double y = box->y + (PAD + LINE * ((double)(place % legend->rows) + 0.5)) * u;
+    if (place < legend->shown) {
+      draw_row(canvas, series, x, y, width);
     } else {
-      draw_row(canvas, series, box.x + PAD * u, y, box.width - 2 * PAD * u);
+      char more[64];
+      snprintf(more, sizeof more, "and %zu more", count - legend->shown);
+      struct text_style style = chart_style_tick();
+      canvas_text(canvas, x + (SAMPLE + GAP) * u, y, 0, 0.5, more, &style);
     }
+    place++;
   }
 }

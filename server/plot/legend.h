@@ -11,12 +11,20 @@ struct point frame_pixel(const struct frame *frame, struct point p);
 void legend_draw_series(struct canvas *canvas, const struct frame *frame,
                         const struct chart_series *series);
 
-/* Size of the legend in pixels; 0 by 0 without named series. max_width, max_height limit it: names
- * are shortened, and curves that do not fit are counted in a last line. */
-void legend_measure(struct canvas *canvas, const struct chart *chart, double max_width,
-                    double max_height, double *width, double *height);
+/* A legend that has been laid out; everything 0 when no series has a name and a point. */
+struct legend {
+  struct box box; /* pixels */
+  size_t columns, rows;
+  size_t shown; /* series named, column by column; when fewer than there are, the last place says
+                 * how many are missing */
+};
 
-/* Draws the legend with its top left corner at (box.x, box.y); box has the measured size. */
-void legend_draw(struct canvas *canvas, const struct chart *chart, struct box box);
+/* Finds the size of the legend in so many columns. max_width and max_height limit it: names are
+ * shortened and curves left out. */
+struct legend legend_measure(struct canvas *canvas, const struct chart *chart, size_t columns,
+                             double max_width, double max_height);
+
+/* Draws the legend where its box is. */
+void legend_draw(struct canvas *canvas, const struct chart *chart, const struct legend *legend);
 
 #endif

@@ -1,6 +1,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "server/plot/data.h"
 #include "server/plot/draw.h"
@@ -10,7 +11,7 @@ struct texts {
   char detail[80];
 };
 
-/* "1.27 °/kPa" and a word when the curve ends early; "" when neither is known. */
+/* "1.27 °/kPa" with a star when the curve ends early; without the number when it is not known. */
 static void describe(const json_t *result, char *text, size_t size) {
   char notice[DATA_HEADING], number[TICKS_TEXT];
   double slope = data_number(json_object_get(result, "metrics"), "sensitivity_deg_per_kPa");
@@ -20,9 +21,9 @@ static void describe(const json_t *result, char *text, size_t size) {
   data_notice(result, notice);
   ticks_number(slope, 3, number);
   if (isfinite(slope)) {
-    snprintf(text, size, "%s °/kPa%s", number, *notice ? ", stopped early" : "");
+    snprintf(text, size, "%s °/kPa%s", number, *notice ? " *" : "");
   } else {
-    snprintf(text, size, "%s", *notice ? "stopped early" : "");
+    snprintf(text, size, "%s", *notice ? "*" : "");
   }
 }
 
@@ -35,6 +36,7 @@ enum status draw_overlay(struct canvas *canvas, const struct plot_input *inputs,
   if (!texts) {
     return error_set(error, STATUS_NO_MEMORY, NULL, "memory ran out for %zu curves", count);
   }
+  bool stopped = false;
   for (size_t i = 0; i < count; i++) {
     size_t point_count;
     status = data_samples(inputs[i].result, "pressure_kPa", "bending_angle_deg", &points[i],
@@ -44,6 +46,7 @@ enum status draw_overlay(struct canvas *canvas, const struct plot_input *inputs,
     }
     data_name(&inputs[i], texts[i].name);
     describe(inputs[i].result, texts[i].detail, sizeof texts[i].detail);
+    stopped = stopped || strchr(texts[i].detail, '*');
     series[i] =
         (struct chart_series){.points = points[i],
                               .count = point_count,
@@ -55,7 +58,8 @@ enum status draw_overlay(struct canvas *canvas, const struct plot_input *inputs,
                               .detail = texts[i].detail};
   }
   char subtitle[64];
-  snprintf(subtitle, sizeof subtitle, count == 1 ? "1 job" : "%zu jobs", count);
+  snprintf(subtitle, sizeof subtitle, "%zu job%s%s", count, count == 1 ? "" : "s",
+           stopped ? " · * stopped early" : "");
   struct chart chart = {.title = "Bending angle against pressure",
                         .subtitle = subtitle,
                         .x_label = "Pressure (kPa)",

@@ -91,7 +91,7 @@ void raster_triangle(struct raster *raster, const struct raster_vertex corners[3
 void raster_line(struct raster *raster, const struct raster_vertex ends[2], struct colour colour,
                  double width, double bias) {
   double dx = ends[1].x - ends[0].x, dy = ends[1].y - ends[0].y;
-  double dd = ends[1].depth - ends[0].depth, half = width / 2;
+  double dd = ends[1].depth - ends[0].depth, half = width / 2 + 0.05;
   int steps = (int)fmin(ceil(fmax(fabs(dx), fabs(dy))), 20000) + 1;
   uint32_t packed = pack(colour, 1.0);
   for (int s = 0; s <= steps; s++) {

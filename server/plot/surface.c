@@ -178,7 +178,7 @@ static void draw_states(const struct skin *skin, const double *values, const str
     shades[i] =
         values ? colour_map_area((i + 0.5) / RASTER_SHADES) : (struct colour){0.45, 0.62, 0.78};
   }
-  fill(skin, skin->bent, values, shades, 0.66, view, raster);
+  fill(skin, skin->bent, values, shades, 0.74, view, raster);
   outline(skin, skin->bent, edges, (struct colour){0.10, 0.12, 0.16}, line, view, raster);
 }
 
@@ -191,7 +191,7 @@ static void draw_scale(struct canvas *canvas, double mm, double left, double y,
   struct text_style style = chart_style_tick();
   style.colour = colour_ink;
   char number[TICKS_TEXT], text[TICKS_TEXT + 40];
-  ticks_number(ticks.step, 1, number);
+  ticks_plain(ticks.step, 3, number);
   snprintf(text, sizeof text, "%s mm", number);
   canvas_set_colour(canvas, colour_ink);
   canvas_line(canvas, left, y, right, y, 2);
@@ -207,7 +207,7 @@ static void draw_scale(struct canvas *canvas, double mm, double left, double y,
   cairo_set_source_rgb(canvas->cr, 0.74, 0.76, 0.79);
   cairo_set_line_width(canvas->cr, u);
   cairo_stroke(canvas->cr);
-  ticks_number(skin->rest_kPa, 3, number);
+  ticks_plain(skin->rest_kPa, 3, number);
   snprintf(text, sizeof text, isfinite(skin->rest_kPa) ? "at %s kPa" : "first state", number);
   canvas_text(canvas, key + 26 * u, y, 0, 0.5, text, &style);
 }
@@ -251,7 +251,7 @@ enum status draw_surface(struct canvas *canvas, const struct plot_input *inputs,
   }
   char title[TICKS_TEXT + 40], number[TICKS_TEXT];
   char subtitle[DATA_HEADING], notice[DATA_HEADING];
-  ticks_number(skin.bent_kPa, 3, number);
+  ticks_plain(skin.bent_kPa, 3, number);
   snprintf(title, sizeof title,
            isfinite(skin.bent_kPa) ? "Deformed body at %s kPa" : "Deformed body", number);
   data_subtitle(&inputs[0], subtitle);

@@ -83,3 +83,14 @@ void ticks_number(double value, int digits, char text[TICKS_TEXT]) {
   }
   true_minus(plain, text);
 }
+
+void ticks_plain(double value, int digits, char text[TICKS_TEXT]) {
+  ticks_number(value, digits, text);
+  if (strchr(text, '.') && !strchr(text, 'e')) {
+    size_t length = strlen(text);
+    while (text[length - 1] == '0') {
+      length--;
+    }
+    text[text[length - 1] == '.' ? length - 1 : length] = '\0';
+  }
+}

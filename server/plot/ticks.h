@@ -33,4 +33,7 @@ void ticks_label(const struct ticks *ticks, int i, char text[TICKS_TEXT]);
  * would not write one, with a true minus sign. */
 void ticks_number(double value, int digits, char text[TICKS_TEXT]);
 
+/* Like ticks_number without zeros at the end: "50" and not "50.0". */
+void ticks_plain(double value, int digits, char text[TICKS_TEXT]);
+
 #endif

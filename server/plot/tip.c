@@ -21,7 +21,7 @@ static size_t label_pressures(const json_t *result, struct chart_label labels[LA
       continue;
     }
     char number[TICKS_TEXT];
-    ticks_number(pressure, 3, number);
+    ticks_plain(pressure, 3, number);
     labels[count].at = at;
     snprintf(labels[count].text, sizeof labels[count].text, "%s kPa", number);
     count++;

@@ -1,0 +1,165 @@
+/* The parts of the plots that have an answer of their own: ticks, places, colours. */
+#include <check.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "server/plot/colour.h"
+#include "server/plot/place.h"
+#include "server/plot/ticks.h"
+
+START_TEST(ticks_are_round_and_inside) {
+  static const double ranges[][2] = {{0, 50},     {-60, 0.3},   {1e-6, 3e-6}, {-1e9, 1e9},
+                                     {0.1, 0.11}, {117, 117.9}, {-7, -6.5}};
+  for (size_t r = 0; r < sizeof ranges / sizeof *ranges; r++) {
+    for (int target = 2; target <= 20; target++) {
+      struct ticks ticks = ticks_make(ranges[r][0], ranges[r][1], target);
+      double digits = ticks.step / pow(10, floor(log10(ticks.step) + 1e-9));
+      ck_assert(fabs(digits - 1) < 1e-6 || fabs(digits - 2) < 1e-6 || fabs(digits - 5) < 1e-6);
+      ck_assert_int_ge(ticks.count, 1);
+      ck_assert_int_le(ticks.count, 2 * target + 1);
+      double slack = 1e-5 * ticks.step;
+      ck_assert_double_ge(ticks_value(&ticks, 0), ranges[r][0] - slack);
+      ck_assert_double_le(ticks_value(&ticks, ticks.count - 1), ranges[r][1] + slack);
+      for (int i = 1; i < ticks.count; i++) {
+        char before[TICKS_TEXT], text[TICKS_TEXT];
+        ticks_label(&ticks, i - 1, before);
+        ticks_label(&ticks, i, text);
+        ck_assert_str_ne(before, text);
+      }
+    }
+  }
+}
+END_TEST
+
+START_TEST(labels_have_a_true_minus_and_no_minus_zero) {
+  struct ticks ticks = ticks_make(-1, 1, 4);
+  char text[TICKS_TEXT];
+  ticks_label(&ticks, 0, text);
+  ck_assert_str_eq(text, "\u22121.0");
+  ticks_label(&ticks, ticks.count / 2, text);
+  ck_assert_str_eq(text, "0.0");
+}
+END_TEST
+
+START_TEST(ranges_grow_to_ticks) {
+  double min = 0, max = 63.7;
+  ticks_widen(&min, &max, 7);
+  ck_assert_double_eq_tol(min, 0, 1e-12);
+  ck_assert_double_eq_tol(max, 70, 1e-9);
+  min = max = 12;
+  ticks_widen(&min, &max, 5);
+  ck_assert(min < 12 && max > 12);
+  min = max = 0;
+  ticks_widen(&min, &max, 5);
+  ck_assert(min < 0 && max > 0);
+  min = NAN;
+  ticks_widen(&min, &max, 5);
+  ck_assert(min < max);
+}
+END_TEST
+
+START_TEST(numbers) {
+  static const struct {
+    double value;
+    int digits;
+    const char *number, *plain;
+  } cases[] = {
+      {1.2746, 3, "1.27", "1.27"},
+      {50, 3, "50.0", "50"},
+      {-0.05, 2, "\u22120.050", "\u22120.05"},
+      {0, 3, "0", "0"},
+      {1234.5, 3, "1234", "1234"},
+      {1e-9, 2, "1.0e\u221209", "1.0e\u221209"},
+      {NAN, 3, "n/a", "n/a"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    char text[TICKS_TEXT];
+    ticks_number(cases[i].value, cases[i].digits, text);
+    ck_assert_str_eq(text, cases[i].number);
+    ticks_plain(cases[i].value, cases[i].digits, text);
+    ck_assert_str_eq(text, cases[i].plain);
+  }
+}
+END_TEST
+
+START_TEST(places_avoid_what_is_there) {
+  struct place place = {.bounds = {0, 0, 100, 100}};
+  struct box found;
+  ck_assert(place_find(&place, 30, 10, 2, &found));
+  ck_assert(found.x == 2 && found.y == 2);
+  place_add_segment(&place, (struct place_segment){0, 0, 100, 100});
+  ck_assert(place_find(&place, 30, 10, 2, &found));
+  ck_assert(found.x == 68 && found.y == 2); /* the first corner off the diagonal */
+  ck_assert(!place_is_free(&place, (struct box){40, 40, 20, 20}, 0));
+  ck_assert(place_is_free(&place, (struct box){60, 10, 20, 20}, 0));
+  ck_assert(!place_is_free(&place, (struct box){90, 10, 20, 20}, 0)); /* sticks out */
+  place_add_box(&place, (struct box){0, 0, 100, 100});
+  ck_assert(!place_find(&place, 5, 5, 0, &found));
+  ck_assert(!place_find(&place, 200, 5, 0, &found));
+  place_release(&place);
+}
+END_TEST
+
+START_TEST(a_label_stays_beside_its_point) {
+  struct place place = {.bounds = {0, 0, 100, 100}};
+  struct box found;
+  ck_assert(place_find_beside(&place, 50, 50, 20, 10, 5, &found));
+  ck_assert(found.x > 50 && found.y + found.height < 50); /* above right */
+  ck_assert(place_find_beside(&place, 98, 50, 20, 10, 5, &found));
+  ck_assert(found.x + found.width < 98); /* no room on the right */
+  place_release(&place);
+}
+END_TEST
+
+static double linear(double c) {
+  return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
+}
+
+/* Relative luminance as in WCAG 2. */
+static double luminance(struct colour c) {
+  return 0.2126 * linear(c.r) + 0.7152 * linear(c.g) + 0.0722 * linear(c.b);
+}
+
+START_TEST(maps_get_lighter_and_lines_stay_visible) {
+  double before = -1, line_before = -1;
+  for (int i = 0; i <= 100; i++) {
+    double area = luminance(colour_map_area(i / 100.0)),
+           line = luminance(colour_map_line(i / 100.0));
+    ck_assert_double_gt(area, before);
+    ck_assert_double_gt(line, line_before);
+    ck_assert_double_ge(1.05 / (line + 0.05), 3.0);
+    before = area;
+    line_before = line;
+  }
+  ck_assert_double_eq(luminance(colour_map_area(-3)), luminance(colour_map_area(0)));
+  ck_assert_double_eq(luminance(colour_map_area(9)), luminance(colour_map_area(1)));
+  ck_assert_double_lt(luminance(colour_map_area(NAN)), 1);
+}
+END_TEST
+
+START_TEST(words_have_contrast) {
+  ck_assert_double_ge(1.05 / (luminance(colour_ink) + 0.05), 7.0);
+  ck_assert_double_ge(1.05 / (luminance(colour_muted) + 0.05), 4.5);
+  ck_assert_double_ge(1.05 / (luminance(colour_notice) + 0.05), 4.5);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("plot parts");
+  TCase *parts = tcase_create("parts");
+  tcase_add_test(parts, ticks_are_round_and_inside);
+  tcase_add_test(parts, labels_have_a_true_minus_and_no_minus_zero);
+  tcase_add_test(parts, ranges_grow_to_ticks);
+  tcase_add_test(parts, numbers);
+  tcase_add_test(parts, places_avoid_what_is_there);
+  tcase_add_test(parts, a_label_stays_beside_its_point);
+  tcase_add_test(parts, maps_get_lighter_and_lines_stay_visible);
+  tcase_add_test(parts, words_have_contrast);
+  suite_add_tcase(suite, parts);
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_NORMAL);
+  int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
