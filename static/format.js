@@ -1,0 +1,99 @@
+// Numbers, units and times in the form people read.
+
+const NAMES = {
+  cai_rad_per_m_kPa: ['Curvature per pressure', 'rad/(m·kPa)'],
+  r_squared: ['R² of the straight line', ''],
+  intercept_deg: ['Intercept of the straight line', '°'],
+  sensitivity_deg_per_kPa: ['Sensitivity', '°/kPa'],
+  end_face_angle_deg: ['Angle of the end face', '°'],
+  chord_angle_deg: ['Angle of the base-to-tip line', '°'],
+  contact_onset_kPa: ['Chambers touch from', 'kPa'],
+  max_stretch: ['Largest stretch', ''],
+  min_gap_mm: ['Smallest gap', 'mm'],
+  max_penetration_mm: ['Largest penetration', 'mm'],
+  wall_s: ['Elapsed time', 's'],
+  cpu_s: ['Processor time', 's'],
+  peak_memory_MB: ['Peak memory', 'MB'],
+};
+
+// Longest endings first: the first that fits is the unit.
+const UNITS = [
+  ['_deg_per_kPa', '°/kPa'], ['_m_s', 'm/s'], ['_mm3', 'mm³'], ['_kPa', 'kPa'], ['_deg', '°'],
+  ['_pct', '%'], ['_mm', 'mm'], ['_Pa', 'Pa'], ['_MB', 'MB'], ['_ms', 'ms'], ['_N', 'N'],
+  ['_g', 'g'], ['_s', 's'], ['_m', 'm'],
+];
+
+function sentence(key) {
+  const words = key.replaceAll('_', ' ');
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}
+
+// { label, unit } of a key such as "bending_angle_deg".
+export function quantity(key) {
+  if (Object.hasOwn(NAMES, key)) {
+    const [label, unit] = NAMES[key];
+    return { label, unit };
+  }
+  if (key.endsWith('_error')) {
+    const base = quantity(key.slice(0, -'_error'.length));
+    return { label: `${base.label}: estimated error`, unit: base.unit };
+  }
+  const found = UNITS.find(([ending]) => key.endsWith(ending));
+  return found
+    ? { label: sentence(key.slice(0, -found[0].length)), unit: found[1] }
+    : { label: sentence(key), unit: '' };
+}
+
+// Four significant digits; whole numbers in full.
+export function number(value) {
+  if (typeof value !== 'number' || !Number.isFinite(value)) {
+    return '–';
+  }
+  if (Number.isInteger(value) && Math.abs(value) < 1e12) {
+    return value.toLocaleString('en-US').replaceAll(',', '\u202f').replace('-', '−');
+  }
+  const size = Math.abs(value);
+  const text = size >= 1e6 || size < 1e-4
+    ? value.toExponential(3)
+    : value.toFixed(Math.max(0, 3 - Math.floor(Math.log10(size))));
+  return text.replaceAll('-', '−');
+}
+
+export function withUnit(key, value) {
+  const { unit } = quantity(key);
+  const gap = unit === '' || unit === '°' ? '' : '\u00a0';
+  return `${number(value)}${gap}${unit}`;
+}
+
+// A time of the API (ISO text, or milliseconds since 1970) as Date, or null.
+export function instant(value) {
+  if (value === null || value === undefined || value === '') {
+    return null;
+  }
+  const date = new Date(value);
+  return Number.isNaN(date.getTime()) ? null : date;
+}
+
+export function moment(value) {
+  const date = instant(value);
+  return date ? date.toLocaleString(undefined, { dateStyle: 'medium', timeStyle: 'medium' }) : '–';
+}
+
+export function ago(value) {
+  const date = instant(value);
+  if (!date) {
+    return '–';
+  }
+  const seconds = Math.max(0, (Date.now() - date.getTime()) / 1000);
+  if (seconds < 60) {
+    return 'just now';
+  }
+  if (seconds < 3600) {
+    return `${Math.floor(seconds / 60)} min ago`;
+  }
+  return seconds < 86400 ? `${Math.floor(seconds / 3600)} h ago` : date.toLocaleDateString();
+}
+
+export function stateWord(state) {
+  return String(state).replaceAll('_', ' ');
+}

@@ -1,0 +1,196 @@
+// The page of one job.
+
+import { isActive, jobUrl, post, request } from './api.js';
+import { describe, find, make, setText } from './dom.js';
+import { instant, moment, number, quantity, stateWord, withUnit } from './format.js';
+import { poll } from './poll.js';
+import { showProblem } from './problem.js';
+
+const CAPTIONS = {
+  angle: 'Bending angle against pressure',
+  midline: 'Centreline at the recorded pressures',
+  tip: 'Path of the tip',
+  surface: 'Deformed body, coloured by the largest stretch',
+};
+
+const ACTIONS = [
+  ['cancel', 'Cancel', (state) => isActive(state) || state === 'held'],
+  ['hold', 'Hold', (state) => state === 'queued'],
+  ['release', 'Release', (state) => state === 'held'],
+  ['retry', 'Retry', (state) => ['failed', 'timed_out', 'cancelled'].includes(state)],
+];
+
+const id = window.location.pathname.split('/').filter(Boolean).pop();
+let shownActions = '';
+let hasResult = false;
+
+function duration(job) {
+  const from = instant(job.started);
+  const to = instant(job.finished) || (isActive(job.state) ? new Date() : null);
+  return from && to ? `${number(Math.round((to - from) / 100) / 10)}\u00a0s` : '–';
+}
+
+function showFacts(job) {
+  const labels = Object.entries(job.labels || {}).map(([name, value]) => `${name}: ${value}`);
+  const facts = [['Created', moment(job.created)], ['Started', moment(job.started)],
+    ['Finished', moment(job.finished)], ['Duration', duration(job)]];
+  if (labels.length > 0) {
+    facts.push(['Labels', labels.join(' · ')]);
+  }
+  describe(find('facts'), facts);
+}
+
+async function act(name) {
+  try {
+    const answer = await post(jobUrl(id, `/${name}`));
+    showProblem(find('action-problem'), null);
+    if (name === 'retry' && answer.id && String(answer.id) !== id) {
+      window.location.assign(`/jobs/${answer.id}`);
+      return;
+    }
+  } catch (problem) {
+    showProblem(find('action-problem'), problem);
+  }
+  refresh();
+}
+
+function showActions(state) {
+  const wanted = ACTIONS.filter(([, , applies]) => applies(state) && state !== 'cancelling');
+  const names = wanted.map(([name]) => name).join();
+  if (names !== shownActions) {
+    shownActions = names;
+    find('actions').replaceChildren(...wanted.map(([name, label]) => {
+      const button = make('button', { type: 'button', 'data-action': name }, label);
+      button.addEventListener('click', () => {
+        button.disabled = true;
+        act(name);
+      });
+      return button;
+    }));
+  }
+}
+
+function showState(job) {
+  document.title = `${job.name || `Job ${job.id}`} · PneuLab`;
+  setText(find('kind'), `Job ${job.id} · ${job.kind}`);
+  setText(find('name'), job.name || `Job ${job.id}`);
+  find('state').className = `state ${job.state}`;
+  setText(find('state'), stateWord(job.state));
+  const isRunning = job.state === 'running' || job.state === 'starting';
+  const share = Math.min(Math.max(Number(job.progress) || 0, 0), 1);
+  find('progress').hidden = !isRunning;
+  find('progress').value = share;
+  setText(find('percent'), isRunning ? `${Math.round(100 * share)}\u00a0%` : '');
+  const code = job.reason_code && job.reason_code !== 'ok' && job.reason_code !== job.state
+    ? stateWord(job.reason_code) : '';
+  const reason = [code, job.message].filter(Boolean).join(': ');
+  find('reason').hidden = reason === '' || job.state === 'succeeded';
+  setText(find('reason'), reason);
+}
+
+function showMetrics(metrics) {
+  const entries = Object.entries(metrics || {});
+  find('metrics').hidden = entries.length === 0;
+  find('metric-table').replaceChildren(
+    make('thead', {}, make('tr', {}, make('th', { scope: 'col' }, 'Metric'),
+      make('th', { scope: 'col', class: 'number' }, 'Value'),
+      make('th', { scope: 'col' }, 'Unit'))),
+    make('tbody', {}, ...entries.map(([key, value]) => {
+      const { label, unit } = quantity(key);
+      return make('tr', { 'data-metric': key }, make('th', { scope: 'row' }, label),
+        make('td', { class: 'number' }, number(value)), make('td', { class: 'unit' }, unit));
+    })));
+}
+
+// Links to plots and files are addresses, or bare names under `folder`.
+function address(link, folder, ending = '') {
+  return link.startsWith('/') ? link : jobUrl(id, `/${folder}/${encodeURIComponent(link)}${ending}`);
+}
+
+function fileName(link) {
+  return decodeURIComponent(link.split('?')[0].split('/').pop());
+}
+
+function showPlots(links) {
+  find('plots').hidden = links.length === 0;
+  find('plot-list').replaceChildren(...links.map((link) => {
+    const url = address(link, 'plots', '.png');
+    const name = fileName(url).replace(/\.png$/, '');
+    const caption = CAPTIONS[name] || name;
+    const image = make('img', { src: url, alt: caption, width: 800, height: 600 });
+    const figure = make('figure', { class: 'plot', 'data-plot': name },
+      make('a', { href: url }, image), make('figcaption', {}, caption));
+    // a plot that cannot be drawn, for want of a file, leaves no broken picture
+    image.addEventListener('error', () => figure.remove());
+    return figure;
+  }));
+}
+
+function showFiles(job) {
+  const links = job.links || {};
+  const files = [['Job document', links.document || jobUrl(id, '/document')]];
+  if (links.document === undefined) {
+    files.pop();
+  }
+  if (hasResult) {
+    files.push(['Result (JSON)', links.result || jobUrl(id, '/result')],
+      ['Samples (CSV)', links.samples || jobUrl(id, '/samples.csv')]);
+  }
+  files.push(['Log', links.log || jobUrl(id, '/log')]);
+  for (const link of links.artifacts || []) {
+    const url = address(link, 'artifacts');
+    files.push([fileName(url), url]);
+  }
+  find('file-list').replaceChildren(...files.map(([name, url]) =>
+    make('li', {}, make('a', { href: url }, name))));
+}
+
+function showResult(result) {
+  const warnings = result.warnings || [];
+  find('warnings').hidden = warnings.length === 0;
+  find('warning-list').replaceChildren(...warnings.map((text) => make('li', {}, String(text))));
+  const statistics = Object.entries(result.statistics || {});
+  find('statistics').hidden = statistics.length === 0;
+  describe(find('statistic-list'), statistics.map(([key, value]) =>
+    [quantity(key).label, withUnit(key, value)]));
+}
+
+// What only a finished job has is loaded once.
+async function showOutcome(job) {
+  const hasMetrics = Object.keys(job.metrics || {}).length > 0;
+  if (isActive(job.state) || hasResult) {
+    return;
+  }
+  if (job.links?.result || hasMetrics) {
+    try {
+      showResult(await request(job.links?.result || jobUrl(id, '/result')));
+      hasResult = true;
+    } catch (problem) {
+      if (problem.status !== 404) {
+        showProblem(find('action-problem'), problem);
+      }
+    }
+  }
+  showMetrics(job.metrics);
+  showPlots(hasResult ? job.links?.plots || [] : []);
+}
+
+async function update() {
+  try {
+    const job = await request(jobUrl(id));
+    showProblem(find('problem'), null);
+    find('job').hidden = false;
+    showState(job);
+    showFacts(job);
+    showActions(job.state);
+    await showOutcome(job);
+    showFiles(job);
+    return isActive(job.state);
+  } catch (problem) {
+    showProblem(find('problem'), problem);
+    return problem.status === 0;
+  }
+}
+
+const refresh = poll(update);
+refresh();
