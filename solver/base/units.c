@@ -182,22 +182,41 @@ static size_t number_length(const char *text) {
   return (size_t)(at - text);
 }
 
+/* Bytes of the sign beyond ASCII at the start of `text` that may be part of a unit, 0 for others:
+ * UDUNITS overlooks some of those that it does not know. */
+static size_t sign_length(const char *text) {
+  static const char *const signs[] = {"\xC2\xB5", "\xCE\xBC", "\xC2\xB0", "\xC2\xB2",
+                                      "\xC2\xB3", "\xC2\xB9", "\xC2\xB7", "\xE2\x81\xBB"};
+  for (size_t i = 0; i < sizeof signs / sizeof *signs; i++) {
+    if (strncmp(text, signs[i], strlen(signs[i])) == 0) {
+      return strlen(signs[i]);
+    }
+  }
+  return 0;
+}
+
 /* UDUNITS takes whole expressions: factors ("3 kPa"), shifts ("m @ 5"), logarithms. After the
  * number only a plain unit may follow: letters, products, quotients, one-digit powers. */
 static bool is_plain_unit(const char *unit) {
-  if (strncmp(unit, "1/", 2) == 0) {
-    unit += 2;
-  }
+  const char *at = strncmp(unit, "1/", 2) == 0 ? unit + 2 : unit;
   int previous = 0;
-  for (const char *at = unit; *at; at++) {
+  while (*at) {
     unsigned char c = (unsigned char)*at;
-    bool after_name = isalpha(previous) || previous == '^' || previous == '-' || previous == ')';
-    if (isdigit(c) ? !after_name
-        : c == '-' ? !(isalpha(previous) || previous == '^')
-                   : !isalpha(c) && c < 0x80 && !strchr(" ./*^()%", c)) {
+    bool after_name = isalpha(previous) || previous == ')';
+    size_t length = c < 0x80 ? 1 : sign_length(at);
+    bool allowed = length > 0;
+    if (isdigit(c)) {
+      allowed = after_name || previous == '^' || previous == '-';
+    } else if (c == '-') {
+      allowed = after_name || previous == '^';
+    } else if (c < 0x80) {
+      allowed = isalpha(c) || strchr(" ./*^()%_", c);
+    }
+    if (!allowed) {
       return false;
     }
     previous = c < 0x80 ? c : 'x';
+    at += length;
   }
   return strstr(unit, "since") == NULL && strstr(unit, "after") == NULL &&
          strstr(unit, "from") == NULL && strstr(unit, "ref") == NULL;

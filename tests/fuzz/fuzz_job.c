@@ -1,0 +1,35 @@
+/* Any bytes as a job: accepted or refused with a sentence and a place, never worse. */
+#include <jansson.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include "solver/job/spec.h"
+#include "tests/fuzz/fuzz.h"
+
+static void check_error(const struct error *error, enum status status) {
+  json_t *message = json_string(error->message);
+  json_t *pointer = json_string(error->pointer);
+  if (error->status != status || status == STATUS_INTERNAL || !message || !pointer ||
+      error->message[0] == '\0' || (status != STATUS_TOO_LARGE && error->line < 1)) {
+    abort();
+  }
+  json_decref(message);
+  json_decref(pointer);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+  static struct job_reader *reader; /* kept between inputs: creating it takes 10 ms */
+  if (!reader && job_reader_create(&reader, NULL) != STATUS_OK) {
+    abort();
+  }
+  struct job_spec spec;
+  struct error error = {.status = STATUS_OK};
+  enum status status = job_reader_read(reader, (const char *)data, size, &spec, &error);
+  if (status != STATUS_OK) {
+    check_error(&error, status);
+  } else if (!(spec.pneunet.cavity_length > 0.0) || !(spec.pneunet.length > 0.0) ||
+             !(material_shear_modulus(&spec.material) > 0.0) || spec.load.steps < 1) {
+    abort();
+  }
+  return 0;
+}

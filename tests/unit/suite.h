@@ -1,0 +1,32 @@
+/* Common parts of the unit tests of solver/base and solver/job. */
+#ifndef PNEULAB_TESTS_UNIT_SUITE_H
+#define PNEULAB_TESTS_UNIT_SUITE_H
+
+#include <check.h>
+#include "solver/job/spec.h"
+
+/* Runs a suite, frees it and returns the exit code of the test program. */
+int suite_run(Suite *suite);
+
+/* Reads a valid job (7 chambers B, 5 C, channel, lateral tapers of 2 deg) after one change:
+ * the member that `pointer` names (no escapes) becomes the JSON `value`, or goes when it is NULL.
+ * A NULL `pointer` changes nothing. */
+enum status suite_read_changed(const char *pointer, const char *value, struct job_spec *spec,
+                               struct error *error);
+
+/* The same after several changes: pairs of pointer and value, ended by a NULL pointer. */
+enum status suite_read_edited(const char *const (*edits)[2], struct job_spec *spec,
+                              struct error *error);
+
+/* One change that has to be refused. */
+struct refusal {
+  const char *pointer, *value; /* as in suite_read_changed */
+  enum status status;
+  const char *at;     /* pointer of the error */
+  const char *phrase; /* part of its message */
+};
+
+/* Asserts that the change is refused as described, with a place in the text. */
+void suite_check_refusal(const struct refusal *refusal);
+
+#endif

@@ -1,0 +1,236 @@
+/* The schema checker: each keyword on a small schema, then the job schema itself. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "solver/job/schema.h"
+#include "tests/unit/suite.h"
+
+static struct units *units;
+
+static void set_up(void) {
+  ck_assert_int_eq(units_create(&units, NULL), STATUS_OK);
+}
+
+static void tear_down(void) {
+  units_destroy(units);
+}
+
+static enum status check_text(const char *schema_text, const char *value_text,
+                              struct error *error) {
+  struct schema *schema = NULL;
+  enum status status = schema_create(schema_text, strlen(schema_text), units, &schema, error);
+  ck_assert_msg(status == STATUS_OK, "%s: %s", schema_text, error->message);
+  json_t *value = json_loads(value_text, JSON_DECODE_ANY, NULL);
+  ck_assert_msg(value != NULL, "%s", value_text);
+  status = schema_check(schema, value, error);
+  json_decref(value);
+  schema_destroy(schema);
+  return status;
+}
+
+#define QUANTITY "{\"type\": \"string\", \"x-unit\": \"mm\"}"
+#define PAIR                                                                                       \
+  "{\"type\": \"object\", \"additionalProperties\": false, \"required\": [\"kind\", \"a\"],"       \
+  " \"properties\": {\"kind\": {\"const\": \"pair\"}, \"a\": {\"type\": \"integer\"}}}"
+#define SINGLE                                                                                     \
+  "{\"type\": \"object\", \"additionalProperties\": false, \"required\": [\"kind\"],"              \
+  " \"properties\": {\"kind\": {\"const\": \"single\"}}}"
+#define CHOICE "{\"oneOf\": [{\"type\": \"string\"}, " PAIR ", " SINGLE "]}"
+
+static const struct {
+  const char *schema, *value;
+} accepted[] = {
+    {"{\"type\": \"object\"}", "{}"},
+    {"{\"type\": \"array\"}", "[]"},
+    {"{\"type\": \"string\"}", "\"\""},
+    {"{\"type\": \"boolean\"}", "false"},
+    {"{\"type\": \"number\"}", "1"},
+    {"{\"type\": \"number\"}", "1.5"},
+    {"{\"type\": \"integer\"}", "1"},
+    {"{\"type\": \"integer\"}", "1.0"},
+    {"{\"const\": 0}", "0.0"},
+    {"{\"enum\": [\"a\", \"b\"]}", "\"b\""},
+    {"{\"minimum\": 1, \"maximum\": 2}", "1"},
+    {"{\"minimum\": 1, \"maximum\": 2}", "2"},
+    {"{\"exclusiveMinimum\": 1, \"exclusiveMaximum\": 2}", "1.5"},
+    {"{\"minimum\": 1}", "\"a rule for numbers alone\""},
+    {"{\"minLength\": 2, \"maxLength\": 2}", "\"\xC3\xA4\xC3\xA4\""},
+    {"{\"minItems\": 1, \"maxItems\": 2}", "[1, 2]"},
+    {"{\"items\": {\"type\": \"integer\"}}", "[1, 2]"},
+    {"{\"additionalProperties\": {\"type\": \"string\"}}", "{\"x\": \"y\"}"},
+    {"{\"propertyNames\": {\"maxLength\": 2}}", "{\"xx\": 1}"},
+    {"{\"maxProperties\": 1}", "{\"x\": 1}"},
+    {QUANTITY, "\"1 m\""},
+    {"{\"x-unit\": \"mm\", \"x-minimum\": \"1 cm\", \"x-maximum\": \"1 m\"}", "\"10 mm\""},
+    {"{\"x-unit\": \"mm\", \"x-minimum\": \"1 cm\", \"x-maximum\": \"1 m\"}", "\"1 m\""},
+    {"{\"x-unit\": \"mm\", \"x-exclusiveMinimum\": \"0 m\"}", "\"1 nm\""},
+    {CHOICE, "\"word\""},
+    {CHOICE, "{\"kind\": \"single\"}"},
+    {CHOICE, "{\"kind\": \"pair\", \"a\": 1}"},
+    {"{\"oneOf\": [{\"const\": 0}, " QUANTITY "]}", "0"},
+    {"{\"oneOf\": [{\"const\": 0}, " QUANTITY "]}", "\"1 mm\""},
+    {"{\"$ref\": \"#/$defs/x\", \"$defs\": {\"x\": {\"type\": \"string\"}}}", "\"\""},
+};
+
+START_TEST(accepts) {
+  struct error error = {.status = STATUS_OK};
+  ck_assert_msg(check_text(accepted[_i].schema, accepted[_i].value, &error) == STATUS_OK,
+                "%s with %s: %s", accepted[_i].schema, accepted[_i].value, error.message);
+}
+END_TEST
+
+static const struct {
+  const char *schema, *value, *pointer, *phrase;
+} refused[] = {
+    {"{\"type\": \"object\"}", "[]", "", "must be an object, not an array"},
+    {"{\"type\": \"array\"}", "{}", "", "must be an array, not an object"},
+    {"{\"type\": \"string\"}", "null", "", "must be a string, not null"},
+    {"{\"type\": \"boolean\"}", "0", "", "must be true or false, not a number"},
+    {"{\"type\": \"number\"}", "true", "", "must be a number, not true or false"},
+    {"{\"type\": \"integer\"}", "1.5", "", "whole number"},
+    {"{\"type\": \"integer\"}", "\"1\"", "", "must be a whole number, not a string"},
+    {"{\"type\": \"integer\", \"examples\": [7]}", "\"1\"", "", "for example 7"},
+    {"{\"const\": \"a\"}", "\"b\"", "", "\"a\""},
+    {"{\"enum\": [\"fast\", \"fine\"]}", "\"fsat\"", "", "did you mean \"fast\"?"},
+    {"{\"enum\": [\"fast\", \"fine\"]}", "\"slow\"", "", "must be \"fast\" or \"fine\""},
+    {"{\"enum\": [\"fast\", \"fine\"]}", "3", "", "\"fast\" or \"fine\", not a number"},
+    {"{\"minimum\": 1}", "0.5", "", "0.5 is out of range: it must be at least 1"},
+    {"{\"maximum\": 1}", "2", "", "at most 1"},
+    {"{\"exclusiveMinimum\": 1}", "1", "", "more than 1"},
+    {"{\"exclusiveMaximum\": 1}", "1", "", "less than 1"},
+    {"{\"minLength\": 2}", "\"\xC3\xA4\"", "", "at least 2 characters"},
+    {"{\"maxLength\": 1}", "\"ab\"", "", "has 2 characters; at most 1"},
+    {"{\"minItems\": 1}", "[]", "", "at least 1 item, not 0"},
+    {"{\"maxItems\": 1}", "[1, 2]", "", "has 2 items; at most 1"},
+    {"{\"items\": {\"type\": \"integer\"}}", "[1, \"a\"]", "/1", "whole number"},
+    {"{\"additionalProperties\": {\"type\": \"string\"}}", "{\"x\": 1}", "/x", "a string"},
+    {"{\"propertyNames\": {\"maxLength\": 2}}", "{\"xxx\": 1}", "/xxx", "3 characters"},
+    {"{\"maxProperties\": 1}", "{\"x\": 1, \"y\": 1}", "", "has 2 members; at most 1"},
+    {PAIR, "{\"kind\": \"pair\"}", "", "the key \"a\" is missing"},
+    {PAIR, "{\"kind\": \"pair\", \"A\": 1}", "/A", "did you mean \"a\"?"},
+    {PAIR, "{\"kind\": \"pair\", \"a\": 1, \"zzzz\": 1}", "/zzzz", "known are \"kind\" or \"a\""},
+    {QUANTITY, "5", "", "the number 5 has no unit: write \"5 mm\""},
+    {QUANTITY, "\"5\"", "", "write \"5 mm\""},
+    {QUANTITY, "\"5 kPa\"", "", "a length is wanted"},
+    {QUANTITY, "[5]", "", "a quantity with its unit"},
+    {"{\"x-unit\": \"mm\", \"x-minimum\": \"1 cm\"}", "\"9 mm\"", "", "at least 1 cm"},
+    {"{\"x-unit\": \"mm\", \"x-maximum\": \"1 cm\"}", "\"11 mm\"", "", "at most 1 cm"},
+    {"{\"x-unit\": \"mm\", \"x-exclusiveMinimum\": \"0 mm\"}", "\"0 m\"", "", "more than 0 mm"},
+    {CHOICE, "3", "", "must be of type string or object, not a number"},
+    {CHOICE, "{}", "", "\"kind\" is missing: it must be \"pair\" or \"single\""},
+    {CHOICE, "{\"kind\": \"siingle\"}", "/kind", "did you mean \"single\"?"},
+    {CHOICE, "{\"kind\": 3}", "/kind", "not a number"},
+    {CHOICE, "{\"kind\": \"single\", \"a\": 1}", "/a", "not known"},
+    {"{\"oneOf\": [{\"const\": 0}, " QUANTITY "]}", "9.8", "", "write \"9.8 mm\""},
+    {"{\"items\": {\"properties\": {\"a/b\": " QUANTITY "}}}", "[{\"a/b\": 1}]", "/0/a~1b",
+     "\"1 mm\""},
+};
+
+START_TEST(refuses) {
+  struct error error = {.status = STATUS_OK};
+  ck_assert_msg(check_text(refused[_i].schema, refused[_i].value, &error) == STATUS_INVALID,
+                "%s took %s", refused[_i].schema, refused[_i].value);
+  ck_assert_int_eq(error.status, STATUS_INVALID);
+  ck_assert_str_eq(error.pointer, refused[_i].pointer);
+  ck_assert_msg(strstr(error.message, refused[_i].phrase) != NULL, "%s with %s: %s",
+                refused[_i].schema, refused[_i].value, error.message);
+}
+END_TEST
+
+static const char *const broken[] = {
+    "{\"type\": \"string\", \"patern\": \"x\"}",
+    "{\"$ref\": \"#/$defs/missing\"}",
+    "{\"$ref\": \"#/$defs/a\", \"$defs\": {\"a\": {\"$ref\": \"#/$defs/a\"}}}",
+    "{\"properties\": {\"a\": {\"format\": \"date\"}}}",
+    "{\"items\": 3}",
+    "{\"oneOf\": [{\"maximun\": 1}]}",
+};
+
+START_TEST(a_schema_with_a_rule_that_nobody_enforces_is_refused) {
+  struct schema *schema = NULL;
+  ck_assert_int_eq(schema_create(broken[_i], strlen(broken[_i]), units, &schema, NULL),
+                   STATUS_INTERNAL);
+}
+END_TEST
+
+START_TEST(fills_defaults_at_every_level) {
+  static const char text[] =
+      "{\"properties\": {\"a\": {\"default\": {}, \"properties\": {\"b\": {\"default\": 1}}},"
+      " \"c\": {\"items\": {\"$ref\": \"#/$defs/x\"}}, \"d\": {\"default\": 2}},"
+      " \"$defs\": {\"x\": {\"properties\": {\"y\": {\"default\": \"z\"}}}}}";
+  struct schema *schema = NULL;
+  ck_assert_int_eq(schema_create(text, sizeof text - 1, units, &schema, NULL), STATUS_OK);
+  json_t *value = json_loads("{\"c\": [{}, {\"y\": \"own\"}], \"d\": 3}", 0, NULL);
+  ck_assert_int_eq(schema_fill(schema, value, NULL), STATUS_OK);
+  char *filled = json_dumps(value, JSON_COMPACT | JSON_SORT_KEYS);
+  ck_assert_str_eq(filled, "{\"a\":{\"b\":1},\"c\":[{\"y\":\"z\"},{\"y\":\"own\"}],\"d\":3}");
+  free(filled);
+  json_decref(value);
+  schema_destroy(schema);
+}
+END_TEST
+
+/* ---- the job schema --------------------------------------------------------------------- */
+
+/* Checks every example and default below `node` against the node that carries it. */
+static int check_examples(const json_t *root, json_t *node) {
+  int checked = 0;
+  const char *key;
+  json_t *child, *example;
+  size_t index;
+  if (json_is_object(node) && json_is_array(json_object_get(node, "examples"))) {
+    json_t *alone = json_copy(node);
+    json_object_set(alone, "$defs", json_object_get(root, "$defs"));
+    char *schema_text = json_dumps(alone, 0);
+    json_t *values = json_deep_copy(json_object_get(node, "examples"));
+    if (json_object_get(node, "default")) {
+      json_array_append(values, json_object_get(node, "default"));
+    }
+    json_array_foreach(values, index, example) {
+      char *value_text = json_dumps(example, JSON_ENCODE_ANY);
+      struct error error = {.status = STATUS_OK};
+      ck_assert_msg(check_text(schema_text, value_text, &error) == STATUS_OK, "%s: %s: %s",
+                    value_text, error.pointer, error.message);
+      free(value_text);
+      checked++;
+    }
+    free(schema_text);
+    json_decref(values);
+    json_decref(alone);
+  }
+  if (json_is_object(node)) {
+    json_object_foreach(node, key, child) {
+      checked += check_examples(root, child);
+    }
+  } else if (json_is_array(node)) {
+    json_array_foreach(node, index, child) {
+      checked += check_examples(root, child);
+    }
+  }
+  return checked;
+}
+
+START_TEST(examples_of_the_job_schema_follow_it) {
+  size_t size = 0;
+  const char *text = job_schema_text(&size);
+  ck_assert_uint_eq(strlen(text), size);
+  json_t *root = json_loadb(text, size, JSON_REJECT_DUPLICATES, NULL);
+  ck_assert_ptr_nonnull(root);
+  ck_assert_int_gt(check_examples(root, root), 40);
+  json_decref(root);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("job: schema");
+  TCase *tcase = tcase_create("all");
+  tcase_add_unchecked_fixture(tcase, set_up, tear_down);
+  tcase_add_loop_test(tcase, accepts, 0, sizeof accepted / sizeof *accepted);
+  tcase_add_loop_test(tcase, refuses, 0, sizeof refused / sizeof *refused);
+  tcase_add_loop_test(tcase, a_schema_with_a_rule_that_nobody_enforces_is_refused, 0,
+                      sizeof broken / sizeof *broken);
+  tcase_add_test(tcase, fills_defaults_at_every_level);
+  tcase_add_test(tcase, examples_of_the_job_schema_follow_it);
+  suite_add_tcase(suite, tcase);
+  return suite_run(suite);
+}
