@@ -94,8 +94,8 @@ static enum status option_count(const char *name, const char *text, double low, 
                                 double *value, struct error *error) {
   enum status status = option_number(name, text, low, high, value, error);
   if (status == STATUS_OK && floor(*value) != *value) {
-    status = error_set(error, STATUS_INVALID, NULL, "--%s %s: expected a whole number.", name,
-                       text);
+    status =
+        error_set(error, STATUS_INVALID, NULL, "--%s %s: expected a whole number.", name, text);
   }
   return status;
 }

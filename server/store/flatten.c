@@ -1,5 +1,6 @@
 #include "server/store/flatten.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,10 +12,10 @@
 static const struct {
   const char *unit, *si;
 } dimensions[] = {
-    {"mm", "m"},        {"kPa", "Pa"},   {"deg", "rad"},   {"kg/m3", "kg m-3"}, {"m/s2", "m s-2"},
-    {"s", "s"},         {"Hz", "s-1"},   {"N", "N"},       {"kg", "kg"},        {"m/s", "m s-1"},
-    {"N/m", "N m-1"},   {"N s/m", "N s m-1"}, {"N/Pa", "m2"}, {"m3", "m3"},     {"J", "J"},
-    {"K", "K"},
+    {"mm", "m"},       {"kPa", "Pa"},    {"deg", "rad"},   {"kg/m3", "kg m-3"},
+    {"m/s2", "m s-2"}, {"s", "s"},       {"Hz", "s-1"},    {"N", "N"},
+    {"kg", "kg"},      {"m/s", "m s-1"}, {"N/m", "N m-1"}, {"N s/m", "N s m-1"},
+    {"N/Pa", "m2"},    {"m3", "m3"},     {"J", "J"},       {"K", "K"},
 };
 
 struct flattening {
@@ -115,8 +116,8 @@ static enum status flatten_value(struct flattening *to, const json_t *value) {
     const char *key;
     json_t *child;
     json_object_foreach((json_t *)value, key, child) {
-      bool about_people = to->pointer[0] == '\0' &&
-                          (strcmp(key, "name") == 0 || strcmp(key, "labels") == 0);
+      bool about_people =
+          to->pointer[0] == '\0' && (strcmp(key, "name") == 0 || strcmp(key, "labels") == 0);
       if (!about_people && status == STATUS_OK) {
         status = flatten_child(to, key, child);
       }

@@ -9,8 +9,8 @@
 #include "server/store/sql.h"
 #include "solver/base/units.h"
 
-static enum status connection_open(const char *path, int flags, const char *settings,
-                                   sqlite3 **db, struct error *error) {
+static enum status connection_open(const char *path, int flags, const char *settings, sqlite3 **db,
+                                   struct error *error) {
   int code = sqlite3_open_v2(path, db, flags | SQLITE_OPEN_NOMUTEX, NULL);
   if (!*db) {
     return error_set(error, STATUS_NO_MEMORY, NULL, "No memory for a database connection.");
@@ -130,8 +130,7 @@ enum status store_write_begin(struct store *store, struct error *error) {
 }
 
 enum status store_write_end(struct store *store, enum status status, struct error *error) {
-  if (status == STATUS_OK &&
-      sqlite3_exec(store->writer, "COMMIT", NULL, NULL, NULL) != SQLITE_OK) {
+  if (status == STATUS_OK && sqlite3_exec(store->writer, "COMMIT", NULL, NULL, NULL) != SQLITE_OK) {
     status = sql_fail(store->writer, error);
   }
   if (status != STATUS_OK) {

@@ -73,17 +73,17 @@ enum status store_claim(struct store *store, struct claim *claim, bool *claimed,
 
 /* The worker of an attempt runs: starting -> running. STATUS_CONFLICT when the attempt is no
  * longer the job's latest or the job is being cancelled. */
-enum status store_attempt_running(struct store *store, int64_t job_id, int64_t attempt,
-                                  int64_t pid, struct error *error);
+enum status store_attempt_running(struct store *store, int64_t job_id, int64_t attempt, int64_t pid,
+                                  struct error *error);
 
 /* How an attempt ended. */
 enum attempt_end {
-  ATTEMPT_SUCCEEDED, /* with a result */
-  ATTEMPT_FAILED,    /* for good, with or without a result */
-  ATTEMPT_TIMED_OUT, /* with or without a result */
-  ATTEMPT_CANCELLED, /* on request */
+  ATTEMPT_SUCCEEDED,   /* with a result */
+  ATTEMPT_FAILED,      /* for good, with or without a result */
+  ATTEMPT_TIMED_OUT,   /* with or without a result */
+  ATTEMPT_CANCELLED,   /* on request */
   ATTEMPT_WORKER_LOST, /* killed or broke the contract: again, or failed when too often */
-  ATTEMPT_REQUEUED   /* the daemon shuts down: back into the queue */
+  ATTEMPT_REQUEUED     /* the daemon shuts down: back into the queue */
 };
 
 struct attempt_outcome {
@@ -91,15 +91,15 @@ struct attempt_outcome {
   enum attempt_end end;
   const char *reason_code; /* "" for success */
   const char *message;
-  int exit_code;      /* -1: a signal ended the worker, or it never ran */
-  int signal;         /* 0: none */
+  int exit_code; /* -1: a signal ended the worker, or it never ran */
+  int signal;    /* 0: none */
   double cpu_s;
   double peak_memory_MB;
-  int64_t retry_delay_ms;    /* for ATTEMPT_WORKER_LOST; doubled with every failure */
-  const char *result_text;   /* the result document, or NULL */
-  const json_t *result;      /* the same, parsed and checked */
-  const char *directory;     /* of its artifacts, relative to the data directory */
-  const json_t *artifacts;   /* object: file name -> size in bytes */
+  int64_t retry_delay_ms;  /* for ATTEMPT_WORKER_LOST; doubled with every failure */
+  const char *result_text; /* the result document, or NULL */
+  const json_t *result;    /* the same, parsed and checked */
+  const char *directory;   /* of its artifacts, relative to the data directory */
+  const json_t *artifacts; /* object: file name -> size in bytes */
 };
 
 /* Ends an attempt: result, metrics, samples, artifacts and the change of state in one
@@ -122,7 +122,7 @@ struct job_record {
   enum job_state state;
   char *reason_code, *message, *kind, *name, *spec_hash;
   int64_t attempt;
-  int64_t retry_of; /* 0: none */
+  int64_t retry_of;                            /* 0: none */
   int64_t created_ms, started_ms, finished_ms; /* 0: not yet */
   bool has_result;
   json_t *labels;    /* object of strings */
@@ -164,23 +164,16 @@ enum status store_result(struct store *store, int64_t id, char **text, char **di
                          struct error *error);
 
 /* STATUS_OK when the job has an artifact of that name; else STATUS_NOT_FOUND. */
-enum status store_artifact(struct store *store, int64_t id, const char *name,
-                           struct error *error);
+enum status store_artifact(struct store *store, int64_t id, const char *name, struct error *error);
 
 /* The attempts of a job: array of objects. The caller owns *attempts. */
-enum status store_attempts(struct store *store, int64_t id, json_t **attempts,
-                           struct error *error);
-
-/* The samples of a job: array of objects name -> number, one a step. The caller owns it. */
-enum status store_samples(struct store *store, int64_t id, json_t **samples,
-                          struct error *error);
+enum status store_attempts(struct store *store, int64_t id, json_t **attempts, struct error *error);
 
 /* The design parameters of a job: object pointer -> { value, text, unit }. */
 enum status store_parameters(struct store *store, int64_t id, json_t **parameters,
                              struct error *error);
 
 /* Number of jobs in each state. */
-enum status store_counts(struct store *store, int64_t counts[JOB_STATE_COUNT],
-                         struct error *error);
+enum status store_counts(struct store *store, int64_t counts[JOB_STATE_COUNT], struct error *error);
 
 #endif

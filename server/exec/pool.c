@@ -1,0 +1,275 @@
+#include "server/exec/pool.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+
+#include "server/base/clock.h"
+#include "server/base/log.h"
+#include "server/exec/run.h"
+
+enum { IDLE_MS = 500 };
+
+/* One thread of the pool and the job it runs. */
+struct slot {
+  struct pool *pool;
+  pthread_t thread;
+  int64_t job_id; /* 0: none */
+  int64_t attempt;
+  bool cancel;
+  struct progress progress;
+};
+
+struct pool {
+  struct pool_settings settings;
+  pthread_mutex_t mutex; /* guards everything below */
+  pthread_cond_t work;   /* a job may be ready, or the pool ends */
+  bool draining, stopping, aborting;
+  unsigned wakes; /* counts pool_wake, so that none is missed */
+  struct pool_statistics statistics;
+  unsigned thread_count;
+  struct slot slots[];
+};
+
+static enum status slot_started(void *context, int64_t pid) {
+  struct slot *slot = context;
+  struct error error;
+  enum status status =
+      store_attempt_running(slot->pool->settings.store, slot->job_id, slot->attempt, pid, &error);
+  if (status == STATUS_OK) {
+    slot->pool->settings.changed(slot->pool->settings.context, slot->job_id);
+  } else if (status != STATUS_CONFLICT) {
+    log_line("job %lld: %s", (long long)slot->job_id, error.message);
+    status = STATUS_OK; /* the start could not be noted: no reason to end the worker */
+  }
+  return status;
+}
+
+static void slot_progressed(void *context, const struct progress *progress) {
+  struct slot *slot = context;
+  pthread_mutex_lock(&slot->pool->mutex);
+  slot->progress = *progress;
+  pthread_mutex_unlock(&slot->pool->mutex);
+}
+
+static enum stop_cause slot_stop_wanted(void *context) {
+  struct slot *slot = context;
+  pthread_mutex_lock(&slot->pool->mutex);
+  enum stop_cause cause = STOP_NONE;
+  if (slot->pool->aborting) {
+    cause = STOP_ABORT;
+  } else if (slot->cancel) {
+    cause = STOP_CANCEL;
+  } else if (slot->pool->stopping) {
+    cause = STOP_SHUTDOWN;
+  }
+  pthread_mutex_unlock(&slot->pool->mutex);
+  return cause;
+}
+
+/* Notes the job in the slot (or, with no claim, that it is free). */
+static void slot_assign(struct slot *slot, const struct claim *claim) {
+  struct pool *pool = slot->pool;
+  pthread_mutex_lock(&pool->mutex);
+  slot->job_id = claim ? claim->job_id : 0;
+  slot->attempt = claim ? claim->attempt : 0;
+  slot->cancel = false;
+  slot->progress = (struct progress){.fraction = -1, .pressure_kPa = -1};
+  if (claim) {
+    pool->statistics.busy++;
+    pool->statistics.attempts_started++;
+  } else {
+    pool->statistics.busy--;
+  }
+  pthread_mutex_unlock(&pool->mutex);
+}
+
+/* Stores the outcome. A database that fails for the moment (a full disk) is asked again for a
+ * while; after that the attempt stays open and is recovered at the next start. */
+static void slot_finish(struct slot *slot, const struct outcome *outcome) {
+  struct error error;
+  enum job_state state;
+  enum status status = STATUS_IO;
+  for (int try = 0; try < 20 && (status == STATUS_IO || status == STATUS_NO_MEMORY); try++) {
+    if (try > 0) {
+      struct timespec pause = {.tv_nsec = 500000000};
+      nanosleep(&pause, NULL);
+    }
+    status = store_attempt_finish(slot->pool->settings.store, &outcome->attempt, &state, &error);
+  }
+  if (status != STATUS_OK) {
+    log_line("job %lld attempt %lld: %s", (long long)slot->job_id, (long long)slot->attempt,
+             error.message);
+    return;
+  }
+  log_line("job %lld attempt %lld: %s %s", (long long)slot->job_id, (long long)slot->attempt,
+           job_state_word(state), outcome->attempt.reason_code);
+  pthread_mutex_lock(&slot->pool->mutex);
+  slot->pool->statistics.attempts_ended[outcome->attempt.end]++;
+  slot->pool->statistics.cpu_s += outcome->attempt.cpu_s;
+  pthread_mutex_unlock(&slot->pool->mutex);
+}
+
+static void slot_run(struct slot *slot, const struct claim *claim) {
+  const struct pool_settings *settings = &slot->pool->settings;
+  struct run_settings run = {.data = settings->data,
+                             .solver = settings->solver,
+                             .memory_limit_bytes = settings->memory_limit_bytes,
+                             .time_limit_s = settings->time_limit_s,
+                             .timeout_margin_s = settings->timeout_margin_s};
+  struct run_hooks hooks = {.context = slot,
+                            .started = slot_started,
+                            .progressed = slot_progressed,
+                            .stop_wanted = slot_stop_wanted};
+  struct outcome outcome;
+  char directory[RUN_DIRECTORY_SIZE + 8];
+  slot_assign(slot, claim);
+  settings->changed(settings->context, claim->job_id);
+  run_attempt(&run, claim, &hooks, &outcome);
+  run_directory(claim->job_id, claim->attempt, directory);
+  outcome.attempt.job_id = claim->job_id;
+  outcome.attempt.attempt = claim->attempt;
+  outcome.attempt.directory = directory;
+  outcome.attempt.retry_delay_ms = (int64_t)(1000 * settings->retry_delay_s);
+  slot_finish(slot, &outcome);
+  outcome_clear(&outcome);
+  slot_assign(slot, NULL);
+  settings->changed(settings->context, claim->job_id);
+}
+
+/* Waits until there may be work; false when the pool ends. */
+static bool slot_wait(struct slot *slot, unsigned *seen) {
+  struct pool *pool = slot->pool;
+  pthread_mutex_lock(&pool->mutex);
+  if (*seen == pool->wakes && !pool->stopping) {
+    struct timespec until = clock_deadline(IDLE_MS);
+    pthread_cond_timedwait(&pool->work, &pool->mutex, &until);
+  }
+  while (pool->draining && !pool->stopping) {
+    pthread_cond_wait(&pool->work, &pool->mutex);
+  }
+  *seen = pool->wakes;
+  bool stopping = pool->stopping;
+  pthread_mutex_unlock(&pool->mutex);
+  return !stopping;
+}
+
+static void *slot_main(void *context) {
+  struct slot *slot = context;
+  unsigned seen = 0;
+  while (slot_wait(slot, &seen)) {
+    struct claim claim;
+    struct error error;
+    bool claimed = true;
+    while (claimed) {
+      pthread_mutex_lock(&slot->pool->mutex);
+      bool open = !slot->pool->draining;
+      pthread_mutex_unlock(&slot->pool->mutex);
+      claimed = false;
+      if (open && store_claim(slot->pool->settings.store, &claim, &claimed, &error) != STATUS_OK) {
+        log_line("cannot take a job: %s", error.message);
+      }
+      if (claimed) {
+        slot_run(slot, &claim);
+        free(claim.document);
+      }
+    }
+  }
+  return NULL;
+}
+
+enum status pool_create(const struct pool_settings *settings, struct pool **pool,
+                        struct error *error) {
+  struct pool *made = calloc(1, sizeof *made + settings->workers * sizeof *made->slots);
+  if (!made) {
+    return error_set(error, STATUS_NO_MEMORY, NULL, "No memory for the worker pool.");
+  }
+  made->settings = *settings;
+  made->statistics.workers = settings->workers;
+  pthread_condattr_t monotonic;
+  pthread_condattr_init(&monotonic);
+  pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
+  pthread_mutex_init(&made->mutex, NULL);
+  pthread_cond_init(&made->work, &monotonic);
+  pthread_condattr_destroy(&monotonic);
+  for (unsigned i = 0; i < settings->workers; i++) {
+    made->slots[i].pool = made;
+    if (pthread_create(&made->slots[i].thread, NULL, slot_main, &made->slots[i]) != 0) {
+      pool_destroy(made);
+      return error_set(error, STATUS_NO_MEMORY, NULL, "Cannot start worker thread %u.", i + 1);
+    }
+    made->thread_count++;
+  }
+  *pool = made;
+  return STATUS_OK;
+}
+
+void pool_wake(struct pool *pool) {
+  pthread_mutex_lock(&pool->mutex);
+  pool->wakes++;
+  pthread_cond_broadcast(&pool->work);
+  pthread_mutex_unlock(&pool->mutex);
+}
+
+void pool_cancel(struct pool *pool, int64_t job_id) {
+  pthread_mutex_lock(&pool->mutex);
+  for (unsigned i = 0; i < pool->thread_count; i++) {
+    if (pool->slots[i].job_id == job_id) {
+      pool->slots[i].cancel = true;
+    }
+  }
+  pthread_mutex_unlock(&pool->mutex);
+}
+
+bool pool_progress(struct pool *pool, int64_t job_id, struct progress *progress) {
+  bool found = false;
+  pthread_mutex_lock(&pool->mutex);
+  for (unsigned i = 0; i < pool->thread_count; i++) {
+    if (pool->slots[i].job_id == job_id && pool->slots[i].progress.fraction >= 0) {
+      *progress = pool->slots[i].progress;
+      found = true;
+    }
+  }
+  pthread_mutex_unlock(&pool->mutex);
+  return found;
+}
+
+void pool_statistics(struct pool *pool, struct pool_statistics *statistics) {
+  pthread_mutex_lock(&pool->mutex);
+  *statistics = pool->statistics;
+  pthread_mutex_unlock(&pool->mutex);
+}
+
+void pool_drain(struct pool *pool) {
+  pthread_mutex_lock(&pool->mutex);
+  pool->draining = true;
+  pthread_mutex_unlock(&pool->mutex);
+}
+
+bool pool_idle(struct pool *pool) {
+  pthread_mutex_lock(&pool->mutex);
+  bool idle = pool->statistics.busy == 0;
+  pthread_mutex_unlock(&pool->mutex);
+  return idle;
+}
+
+void pool_stop(struct pool *pool, bool abort) {
+  pthread_mutex_lock(&pool->mutex);
+  pool->draining = true;
+  pool->stopping = true;
+  pool->aborting = pool->aborting || abort;
+  pthread_cond_broadcast(&pool->work);
+  pthread_mutex_unlock(&pool->mutex);
+}
+
+void pool_destroy(struct pool *pool) {
+  if (!pool) {
+    return;
+  }
+  pool_stop(pool, false);
+  for (unsigned i = 0; i < pool->thread_count; i++) {
+    pthread_join(pool->slots[i].thread, NULL);
+  }
+  pthread_cond_destroy(&pool->work);
+  pthread_mutex_destroy(&pool->mutex);
+  free(pool);
+}

@@ -1,0 +1,136 @@
+#include "server/exec/run.h"
+
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "server/base/clock.h"
+#include "server/base/file.h"
+#include "server/base/log.h"
+
+enum { POLL_MS = 250, GRACE_MS = 5000, POLL_FIRST_MS = 20, OUTPUT_BYTES_MAX = 1 << 30 };
+
+/* The paths of one attempt; room for the longest name after the data directory. */
+struct run_paths {
+  char directory[PATH_MAX], job[PATH_MAX], events[PATH_MAX], log[PATH_MAX];
+  char output[PATH_MAX]; /* what the worker prints, renamed once it is complete */
+  char result[PATH_MAX], artifacts[PATH_MAX];
+};
+
+/* State of the watch over a running worker. */
+struct watch {
+  int64_t timeout_at_ms;
+  int64_t kill_at_ms; /* 0: not asked to stop */
+  enum stop_cause cause;
+};
+
+void run_directory(int64_t job_id, int64_t attempt, char name[RUN_DIRECTORY_SIZE]) {
+  snprintf(name, RUN_DIRECTORY_SIZE, "attempts/%lld-%lld", (long long)job_id, (long long)attempt);
+}
+
+static bool path_join(char path[PATH_MAX], const char *directory, const char *name) {
+  int length = snprintf(path, PATH_MAX, "%s/%s", directory, name);
+  return length > 0 && length < PATH_MAX;
+}
+
+/* Creates the folder of the attempt with the job in it. */
+static enum status run_prepare(const struct run_settings *settings, const struct claim *claim,
+                               struct run_paths *paths, struct error *error) {
+  char name[RUN_DIRECTORY_SIZE];
+  run_directory(claim->job_id, claim->attempt, name);
+  if (!path_join(paths->directory, settings->data, name) ||
+      !path_join(paths->job, paths->directory, "job.json") ||
+      !path_join(paths->events, paths->directory, "events.jsonl") ||
+      !path_join(paths->log, paths->directory, "log.txt") ||
+      !path_join(paths->output, paths->directory, "result.json.part") ||
+      !path_join(paths->result, paths->directory, "result.json") ||
+      !path_join(paths->artifacts, paths->directory, "out")) {
+    return error_set(error, STATUS_TOO_LARGE, NULL, "The path of the data directory is too long.");
+  }
+  file_remove_tree(paths->directory);
+  enum status status = file_make_directory(paths->artifacts, error);
+  if (status == STATUS_OK) {
+    status = file_write(paths->job, claim->document, strlen(claim->document), error);
+  }
+  return status;
+}
+
+static enum status run_start(const struct run_settings *settings, const struct run_paths *paths,
+                             double time_limit_s, struct process *process, struct error *error) {
+  const char *argv[] = {settings->solver, "--out", paths->artifacts, "--events", paths->events,
+                        "--threads",      "1",     paths->job,       NULL};
+  struct process_limits limits = {.memory_bytes = settings->memory_limit_bytes,
+                                  .cpu_s = (uint64_t)ceil(time_limit_s) + 1,
+                                  .file_bytes = OUTPUT_BYTES_MAX};
+  return process_start(argv, paths->output, paths->log, &limits, process, error);
+}
+
+/* Asks the worker to end when somebody wants that, and insists after a while. */
+static void watch_step(struct watch *watch, const struct run_hooks *hooks,
+                       const struct process *process) {
+  int64_t now = clock_monotonic_ms();
+  enum stop_cause wanted = hooks->stop_wanted(hooks->context);
+  if (wanted == STOP_NONE && now >= watch->timeout_at_ms) {
+    wanted = STOP_TIMEOUT;
+  }
+  if (wanted == STOP_ABORT) {
+    watch->cause = watch->cause == STOP_NONE ? STOP_SHUTDOWN : watch->cause;
+    process_signal(process, SIGKILL);
+  } else if (watch->cause == STOP_NONE && wanted != STOP_NONE) {
+    watch->cause = wanted;
+    watch->kill_at_ms = now + GRACE_MS;
+    process_signal(process, SIGTERM);
+  } else if (watch->cause != STOP_NONE && now >= watch->kill_at_ms) {
+    process_signal(process, SIGKILL);
+  }
+}
+
+static enum stop_cause run_watch(const struct run_hooks *hooks, const struct run_paths *paths,
+                                 double time_limit_s, struct process *process,
+                                 struct process_end *end) {
+  struct progress_reader reader = {.offset = 0};
+  memcpy(reader.path, paths->events, sizeof reader.path);
+  struct progress progress = {.fraction = -1, .pressure_kPa = -1};
+  struct watch watch = {.timeout_at_ms = clock_monotonic_ms() + (int64_t)(1000 * time_limit_s)};
+  if (hooks->started(hooks->context, process->pid) != STATUS_OK) {
+    watch.cause = STOP_CANCEL;
+    watch.kill_at_ms = clock_monotonic_ms() + GRACE_MS;
+    process_signal(process, SIGTERM);
+  }
+  int wait_ms = POLL_FIRST_MS;
+  while (!process_wait(process, wait_ms, end)) {
+    wait_ms = wait_ms < POLL_MS ? wait_ms * 2 : POLL_MS;
+    if (progress_poll(&reader, &progress)) {
+      hooks->progressed(hooks->context, &progress);
+    }
+    watch_step(&watch, hooks, process);
+  }
+  return watch.cause;
+}
+
+void run_attempt(const struct run_settings *settings, const struct claim *claim,
+                 const struct run_hooks *hooks, struct outcome *outcome) {
+  struct error error = {.status = STATUS_OK};
+  struct run_paths paths;
+  struct process process;
+  struct process_end end;
+  double time_limit_s = claim->timeout_s > 0 ? claim->timeout_s : settings->time_limit_s;
+  time_limit_s += settings->timeout_margin_s;
+  enum status status = run_prepare(settings, claim, &paths, &error);
+  if (status == STATUS_OK) {
+    status = run_start(settings, &paths, time_limit_s, &process, &error);
+  }
+  if (status != STATUS_OK) {
+    log_line("job %lld attempt %lld: %s", (long long)claim->job_id, (long long)claim->attempt,
+             error.message);
+    outcome_not_started(outcome, &error);
+    return;
+  }
+  enum stop_cause cause = run_watch(hooks, &paths, time_limit_s, &process, &end);
+  const char *output = paths.output;
+  if (end.exit_code >= 0 && rename(paths.output, paths.result) == 0) {
+    output = paths.result;
+  }
+  outcome_judge(outcome, &end, cause, output, paths.artifacts);
+}

@@ -1,0 +1,48 @@
+#include <limits.h>
+#include <stdio.h>
+
+#include "server/exec/run.h"
+#include "server/http/handlers.h"
+
+void attempts_list(struct request *request, struct reply *reply) {
+  struct error error;
+  json_t *attempts;
+  int64_t id;
+  if (!request_id(request, reply, &id)) {
+    return;
+  }
+  if (store_attempts(request->service->store, id, &attempts, &error) != STATUS_OK) {
+    reply_error(reply, &error);
+    return;
+  }
+  reply_json(reply, 200, json_pack("{s:o}", "attempts", attempts));
+}
+
+void attempts_log(struct request *request, struct reply *reply) {
+  static const char *const known[] = {"attempt", NULL};
+  char name[RUN_DIRECTORY_SIZE], path[PATH_MAX];
+  struct job_record record;
+  struct error error;
+  int64_t id, attempt;
+  if (!request_id(request, reply, &id) || !request_query_known(request, reply, known)) {
+    return;
+  }
+  if (store_job(request->service->store, id, &record, &error) != STATUS_OK) {
+    reply_error(reply, &error);
+    return;
+  }
+  int64_t latest = record.attempt;
+  job_record_clear(&record);
+  if (latest == 0) {
+    reply_problem(reply, 404, "no_log", "Job %lld has not started yet.", (long long)id);
+    return;
+  }
+  if (!request_query_integer(request, reply, "attempt", 1, latest, latest, &attempt)) {
+    return;
+  }
+  run_directory(id, attempt, name);
+  int length = snprintf(path, sizeof path, "%s/%s/log.txt", request->service->data, name);
+  if (length > 0 && (size_t)length < sizeof path) {
+    reply_file(reply, "text/plain; charset=utf-8", path);
+  }
+}

@@ -1,0 +1,36 @@
+/* The handlers of the route table, by file. Each answers one request completely. */
+#ifndef PNEULAB_HTTP_HANDLERS_H
+#define PNEULAB_HTTP_HANDLERS_H
+
+#include "server/http/service.h"
+
+/* jobs.c: the collection */
+handler jobs_list, jobs_submit, jobs_validate;
+
+/* job.c: one job */
+handler job_show, job_delete, job_cancel, job_retry, job_hold, job_release, job_document;
+
+/* result.c: what came out of a job */
+handler result_show, result_metrics, result_samples, result_artifact;
+
+/* attempts.c */
+handler attempts_list, attempts_log;
+
+/* plots.c */
+handler plot_job, plot_overlay;
+
+/* compare.c */
+handler compare_show;
+
+/* catalogue.c: what the program knows by itself */
+handler catalogue_materials, catalogue_schema, catalogue_openapi;
+
+/* health.c */
+handler health_live, health_ready, health_metrics;
+
+/* pages.c */
+handler page_job, page_show;
+/* Whether the request's path names a file of the table static_files, or the start page. */
+bool page_exists(const struct request *request);
+
+#endif

@@ -1,0 +1,165 @@
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "server/base/file.h"
+#include "server/exec/run.h"
+#include "server/http/handlers.h"
+#include "server/http/job_view.h"
+#include "server/http/waiters.h"
+#include "solver/job/json.h"
+#include "solver/job/spec.h"
+
+void job_show(struct request *request, struct reply *reply) {
+  int64_t id;
+  if (request_id(request, reply, &id)) {
+    job_view_reply_waiting(request, reply, 200, id, false);
+  }
+}
+
+void job_document(struct request *request, struct reply *reply) {
+  struct error error;
+  int64_t id;
+  char *text;
+  if (!request_id(request, reply, &id)) {
+    return;
+  }
+  if (store_document(request->service->store, id, &text, &error) != STATUS_OK) {
+    reply_error(reply, &error);
+    return;
+  }
+  reply_text(reply, "application/json", text, strlen(text));
+}
+
+/* Removes the folders of the job's attempts. */
+static void job_remove_files(const char *data, int64_t id, int64_t attempts) {
+  for (int64_t attempt = 1; attempt <= attempts; attempt++) {
+    char name[RUN_DIRECTORY_SIZE], path[PATH_MAX];
+    run_directory(id, attempt, name);
+    int length = snprintf(path, sizeof path, "%s/%s", data, name);
+    if (length > 0 && (size_t)length < sizeof path) {
+      file_remove_tree(path);
+    }
+  }
+}
+
+void job_delete(struct request *request, struct reply *reply) {
+  struct service *service = request->service;
+  struct job_record record;
+  struct error error;
+  int64_t id;
+  if (!request_id(request, reply, &id)) {
+    return;
+  }
+  if (store_job(service->store, id, &record, &error) != STATUS_OK) {
+    reply_error(reply, &error);
+    return;
+  }
+  int64_t attempts = record.attempt;
+  job_record_clear(&record);
+  if (store_delete(service->store, id, &error) != STATUS_OK) {
+    reply_error(reply, &error);
+    return;
+  }
+  job_remove_files(service->data, id, attempts);
+  reply->status = 204;
+}
+
+void job_cancel(struct request *request, struct reply *reply) {
+  struct service *service = request->service;
+  enum job_state state;
+  struct error error;
+  int64_t id;
+  if (!request_id(request, reply, &id)) {
+    return;
+  }
+  if (store_cancel(service->store, id, &state, &error) != STATUS_OK) {
+    reply_error(reply, &error);
+    return;
+  }
+  if (state == JOB_STATE_CANCELLING) {
+    pool_cancel(service->pool, id);
+  } else {
+    waiters_job_ended(service->waiters, id);
+  }
+  job_view_reply_waiting(request, reply, state == JOB_STATE_CANCELLED ? 200 : 202, id, false);
+}
+
+/* A terminal job is immutable, so to retry it is to submit its document again. */
+static enum status job_resubmit(struct store *store, int64_t id, int64_t *new_id,
+                                struct error *error) {
+  struct job_record record;
+  struct job_spec spec;
+  struct submission submission = {.retry_of = id};
+  json_t *root = NULL;
+  char *text = NULL;
+  bool replayed;
+  enum status status = store_job(store, id, &record, error);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  if (!job_state_terminal(record.state)) {
+    status = error_set(error, STATUS_CONFLICT, NULL,
+                       "Job %lld is %s; only a finished job can be tried again.", (long long)id,
+                       job_state_word(record.state));
+  }
+  job_record_clear(&record);
+  if (status == STATUS_OK) {
+    status = store_document(store, id, &text, error);
+  }
+  /* Checked anew: the rules may have changed since. */
+  if (status == STATUS_OK) {
+    status = job_spec_read(text, strlen(text), &spec, error);
+  }
+  if (status == STATUS_OK) {
+    status = json_text_read(text, strlen(text), &root, error);
+  }
+  if (status == STATUS_OK) {
+    submission.document = text;
+    submission.root = root;
+    submission.spec_hash = spec.hash;
+    submission.timeout_s = spec.timeout_s;
+    status = store_submit(store, &submission, new_id, &replayed, error);
+  }
+  json_decref(root);
+  free(text);
+  return status;
+}
+
+void job_retry(struct request *request, struct reply *reply) {
+  struct error error;
+  int64_t id, new_id;
+  if (!request_id(request, reply, &id)) {
+    return;
+  }
+  if (atomic_load(&request->service->draining)) {
+    reply_problem(reply, 503, "shutting_down", "The server is shutting down; try again later.");
+  } else if (job_resubmit(request->service->store, id, &new_id, &error) != STATUS_OK) {
+    reply_error(reply, &error);
+  } else {
+    pool_wake(request->service->pool);
+    job_view_reply_waiting(request, reply, 202, new_id, true);
+  }
+}
+
+static void job_hold_set(struct request *request, struct reply *reply, bool hold) {
+  struct error error;
+  int64_t id;
+  if (!request_id(request, reply, &id)) {
+    return;
+  }
+  if (store_hold(request->service->store, id, hold, &error) != STATUS_OK) {
+    reply_error(reply, &error);
+    return;
+  }
+  pool_wake(request->service->pool);
+  job_view_reply(request, reply, 200, id, false);
+}
+
+void job_hold(struct request *request, struct reply *reply) {
+  job_hold_set(request, reply, true);
+}
+
+void job_release(struct request *request, struct reply *reply) {
+  job_hold_set(request, reply, false);
+}

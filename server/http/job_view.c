@@ -1,0 +1,131 @@
+#include "server/http/job_view.h"
+
+#include <stdio.h>
+
+#include "server/base/clock.h"
+#include "server/plot/plot.h"
+
+static json_t *time_view(int64_t unix_ms) {
+  char text[CLOCK_TEXT_SIZE];
+  if (unix_ms == 0) {
+    return json_null();
+  }
+  clock_format(unix_ms, text);
+  return json_string(text);
+}
+
+static json_t *progress_view(const struct service *service, const struct job_record *record) {
+  struct progress progress;
+  if (job_state_terminal(record->state)) {
+    return record->state == JOB_STATE_SUCCEEDED ? json_real(1) : json_null();
+  }
+  if (pool_progress(service->pool, record->id, &progress)) {
+    return json_real(progress.fraction);
+  }
+  return json_real(0);
+}
+
+static void link_set(json_t *links, const char *name, int64_t id, const char *rest) {
+  char path[200];
+  snprintf(path, sizeof path, "/api/v1/jobs/%lld%s", (long long)id, rest);
+  json_object_set_new(links, name, json_string(path));
+}
+
+/* Links to what the job has; those of a result only once there is one. */
+static json_t *links_view(const struct job_record *record) {
+  json_t *links = json_object(), *plots = json_array(), *artifacts = json_array();
+  char path[200];
+  link_set(links, "self", record->id, "");
+  link_set(links, "document", record->id, "/document");
+  link_set(links, "attempts", record->id, "/attempts");
+  link_set(links, "log", record->id, "/log");
+  if (record->has_result) {
+    link_set(links, "result", record->id, "/result");
+    link_set(links, "metrics", record->id, "/metrics");
+    link_set(links, "samples", record->id, "/samples.csv");
+    const char *const *names = plot_names(record->kind);
+    for (size_t i = 0; names[i]; i++) {
+      snprintf(path, sizeof path, "/api/v1/jobs/%lld/plots/%s.png", (long long)record->id,
+               names[i]);
+      json_array_append_new(plots, json_string(path));
+    }
+  }
+  for (size_t i = 0; i < json_array_size(record->artifacts); i++) {
+    snprintf(path, sizeof path, "/api/v1/jobs/%lld/artifacts/%s", (long long)record->id,
+             json_string_value(json_array_get(record->artifacts, i)));
+    json_array_append_new(artifacts, json_string(path));
+  }
+  json_object_set_new(links, "plots", plots);
+  json_object_set_new(links, "artifacts", artifacts);
+  return links;
+}
+
+json_t *job_view(const struct service *service, const struct job_record *record) {
+  json_t *view =
+      json_pack("{s:I, s:s, s:s, s:s, s:s, s:s, s:O, s:o, s:I, s:s, s:o, s:o, s:o}", "id",
+                (json_int_t)record->id, "state", job_state_word(record->state), "reason_code",
+                record->reason_code, "message", record->message, "kind", record->kind, "name",
+                record->name, "labels", record->labels, "progress", progress_view(service, record),
+                "attempt", (json_int_t)record->attempt, "spec_hash", record->spec_hash, "created",
+                time_view(record->created_ms), "started", time_view(record->started_ms), "finished",
+                time_view(record->finished_ms));
+  if (view && record->retry_of != 0) {
+    json_object_set_new(view, "retry_of", json_integer(record->retry_of));
+  }
+  if (view && record->has_result) {
+    json_object_set(view, "metrics", record->metrics);
+  }
+  if (view) {
+    json_object_set_new(view, "links", links_view(record));
+  }
+  return view;
+}
+
+static void location_set(struct reply *reply, int64_t id) {
+  reply_header(reply, "Location", "/api/v1/jobs/%lld", (long long)id);
+}
+
+void job_view_reply(struct request *request, struct reply *reply, unsigned status, int64_t id,
+                    bool location) {
+  struct job_record record;
+  struct error error;
+  if (store_job(request->service->store, id, &record, &error) != STATUS_OK) {
+    reply_error(reply, &error);
+    return;
+  }
+  reply_json(reply, status, job_view(request->service, &record));
+  job_record_clear(&record);
+  if (location) {
+    location_set(reply, id);
+  }
+}
+
+static void job_waited(struct request *request, struct reply *reply) {
+  struct job_record record;
+  struct error error;
+  if (store_job(request->service->store, request->job_id, &record, &error) != STATUS_OK) {
+    reply_error(reply, &error);
+    return;
+  }
+  bool ended = job_state_terminal(record.state);
+  reply_json(reply, ended || request->method == HTTP_GET ? 200 : 202,
+             job_view(request->service, &record));
+  job_record_clear(&record);
+  reply_header(reply, "Preference-Applied", "wait=%lld", (long long)request_wait_s(request));
+  if (request->method == HTTP_POST) {
+    location_set(reply, request->job_id);
+  }
+}
+
+void job_view_reply_waiting(struct request *request, struct reply *reply, unsigned status,
+                            int64_t id, bool location) {
+  int64_t wait_s = request_wait_s(request);
+  if (wait_s == 0) {
+    job_view_reply(request, reply, status, id, location);
+    return;
+  }
+  request->job_id = id;
+  reply->wait_job_id = id;
+  reply->wait_ms = 1000 * wait_s;
+  reply->then = job_waited;
+}

@@ -1,0 +1,21 @@
+/* Jobs as the API shows them. */
+#ifndef PNEULAB_HTTP_JOB_VIEW_H
+#define PNEULAB_HTTP_JOB_VIEW_H
+
+#include <jansson.h>
+
+#include "server/http/service.h"
+
+/* The JSON of a job: a new reference, NULL without memory. */
+json_t *job_view(const struct service *service, const struct job_record *record);
+
+/* Replies with the job: `status`, its JSON, its Location when `location` is set. */
+void job_view_reply(struct request *request, struct reply *reply, unsigned status, int64_t id,
+                    bool location);
+
+/* Replies like job_view_reply, but first waits as long as "Prefer: wait=N" asks for the job to end:
+ * the status is then 200 when it has ended, else `status`. */
+void job_view_reply_waiting(struct request *request, struct reply *reply, unsigned status,
+                            int64_t id, bool location);
+
+#endif

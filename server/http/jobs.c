@@ -1,0 +1,183 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "server/http/handlers.h"
+#include "server/http/job_view.h"
+#include "solver/job/json.h"
+#include "solver/job/spec.h"
+
+enum { KEY_MAX = 200, LIST_LIMIT = 50, LIST_LIMIT_MAX = 500 };
+
+/* Checks the request's job document. On success *root is the caller's. */
+static bool document_check(const struct request *request, struct reply *reply,
+                           struct job_spec *spec, json_t **root) {
+  struct error error = {.status = STATUS_OK};
+  const char *text = request->body ? request->body : "";
+  if (job_spec_read(text, request->body_size, spec, &error) == STATUS_OK &&
+      json_text_read(text, request->body_size, root, &error) == STATUS_OK) {
+    return true;
+  }
+  reply_error(reply, &error);
+  return false;
+}
+
+/* The request's idempotency key, NULL when it has none; false when it is malformed. */
+static bool key_read(const struct request *request, struct reply *reply, const char **key) {
+  *key = request_header(request, "Idempotency-Key");
+  if (*key && (strlen(*key) == 0 || strlen(*key) > KEY_MAX)) {
+    reply_problem(reply, 400, "invalid_header", "Idempotency-Key: expected 1 to %d characters.",
+                  KEY_MAX);
+    return false;
+  }
+  return true;
+}
+
+void jobs_submit(struct request *request, struct reply *reply) {
+  struct service *service = request->service;
+  struct job_spec spec;
+  struct error error;
+  struct submission submission = {.document = request->body};
+  json_t *root = NULL;
+  int64_t id;
+  bool replayed;
+  static const char *const known[] = {NULL};
+  if (atomic_load(&service->draining)) {
+    reply_problem(reply, 503, "shutting_down", "The server is shutting down; try again later.");
+    return;
+  }
+  if (!request_query_known(request, reply, known) ||
+      !key_read(request, reply, &submission.idempotency_key) ||
+      !document_check(request, reply, &spec, &root)) {
+    return;
+  }
+  submission.root = root;
+  submission.spec_hash = spec.hash;
+  submission.timeout_s = spec.timeout_s;
+  enum status status = store_submit(service->store, &submission, &id, &replayed, &error);
+  json_decref(root);
+  if (status == STATUS_CONFLICT && submission.idempotency_key) {
+    reply_problem(reply, 422, "idempotency_key_reused", "%s", error.message);
+    return;
+  }
+  if (status != STATUS_OK) {
+    reply_error(reply, &error);
+    return;
+  }
+  pool_wake(service->pool);
+  job_view_reply_waiting(request, reply, 202, id, true);
+}
+
+void jobs_validate(struct request *request, struct reply *reply) {
+  struct job_spec spec;
+  json_t *root = NULL;
+  if (document_check(request, reply, &spec, &root)) {
+    reply_json(reply, 200,
+               json_pack("{s:b, s:s, s:s}", "valid", 1, "kind",
+                         json_string_value(json_object_get(root, "kind")), "spec_hash", spec.hash));
+    json_decref(root);
+  }
+}
+
+/* "state=queued,running" into the set of wanted states. */
+static bool list_states(const struct request *request, struct reply *reply,
+                        struct list_query *query) {
+  const char *rest = url_query(&request->url, "state");
+  while (rest && *rest) {
+    char word[20];
+    size_t length = strcspn(rest, ",");
+    enum job_state state;
+    if (length >= sizeof word) {
+      length = sizeof word - 1;
+    }
+    memcpy(word, rest, length);
+    word[length] = '\0';
+    if (!job_state_parse(word, &state)) {
+      reply_problem(reply, 400, "invalid_query",
+                    "There is no state %s; known are queued, held, starting, running, cancelling, "
+                    "retry_wait, succeeded, failed, timed_out, cancelled.",
+                    word);
+      return false;
+    }
+    query->states[state] = true;
+    rest += length + (rest[length] == ',');
+  }
+  return true;
+}
+
+static bool list_labels(const struct request *request, struct reply *reply,
+                        struct list_query *query) {
+  for (size_t i = 0; i < request->url.query_count; i++) {
+    const struct url_pair *pair = &request->url.query[i];
+    if (strncmp(pair->name, "label.", 6) != 0) {
+      continue;
+    }
+    if (query->label_count == STORE_LABELS_MAX) {
+      reply_problem(reply, 400, "invalid_query", "At most %d labels can be filtered by.",
+                    STORE_LABELS_MAX);
+      return false;
+    }
+    query->labels[query->label_count].name = pair->name + 6;
+    query->labels[query->label_count++].value = pair->value;
+  }
+  return true;
+}
+
+static bool list_sort(const struct request *request, struct reply *reply,
+                      struct list_query *query) {
+  static const char *const words[] = {[LIST_BY_ID] = "id",
+                                      [LIST_BY_CREATED] = "created",
+                                      [LIST_BY_FINISHED] = "finished",
+                                      [LIST_BY_NAME] = "name",
+                                      [LIST_BY_STATE] = "state"};
+  const char *word = url_query(&request->url, "sort");
+  word = word ? word : "-id";
+  query->descending = word[0] == '-';
+  for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+    if (strcmp(words[i], word + query->descending) == 0) {
+      query->sort = i;
+      return true;
+    }
+  }
+  reply_problem(reply, 400, "invalid_query",
+                "sort=%.40s: expected id, created, finished, name or state, with a leading minus "
+                "for the largest first, for example sort=-id.",
+                word);
+  return false;
+}
+
+static json_t *list_view(const struct service *service, struct job_record *records, size_t count,
+                         int64_t next) {
+  json_t *jobs = json_array();
+  for (size_t i = 0; i < count; i++) {
+    json_array_append_new(jobs, job_view(service, &records[i]));
+    job_record_clear(&records[i]);
+  }
+  free(records);
+  json_t *cursor = next != 0 ? json_sprintf("%lld", (long long)next) : json_null();
+  return json_pack("{s:o, s:o}", "jobs", jobs, "next", cursor);
+}
+
+void jobs_list(struct request *request, struct reply *reply) {
+  static const char *const known[] = {"state", "kind", "label.", "sort", "cursor", "limit", NULL};
+  struct list_query query = {.kind = url_query(&request->url, "kind")};
+  struct job_record *records;
+  struct error error;
+  size_t count;
+  int64_t next, limit;
+  if (!request_query_known(request, reply, known) || !list_states(request, reply, &query) ||
+      !list_labels(request, reply, &query) || !list_sort(request, reply, &query) ||
+      !request_query_integer(request, reply, "cursor", 1, INT64_MAX, 0, &query.cursor) ||
+      !request_query_integer(request, reply, "limit", 1, LIST_LIMIT_MAX, LIST_LIMIT, &limit)) {
+    return;
+  }
+  query.limit = (int)limit;
+  enum status status = store_list(request->service->store, &query, &records, &count, &next, &error);
+  if (status == STATUS_NOT_FOUND) {
+    reply_problem(reply, 400, "invalid_query",
+                  "The job of this cursor was deleted; start again without a cursor.");
+  } else if (status != STATUS_OK) {
+    reply_error(reply, &error);
+  } else {
+    reply_json(reply, 200, list_view(request->service, records, count, next));
+  }
+}

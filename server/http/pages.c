@@ -1,0 +1,70 @@
+#include <stdio.h>
+#include <string.h>
+
+#include "server/http/handlers.h"
+#include "server/http/static_files.h"
+
+static const struct static_file *page_find(const char *path) {
+  for (size_t i = 0; i < static_file_count; i++) {
+    if (strcmp(static_files[i].path, path) == 0) {
+      return &static_files[i];
+    }
+  }
+  return NULL;
+}
+
+/* The file of a request's path: the path itself, or with ".html" added, or the start page. */
+static const struct static_file *page_of(const struct request *request) {
+  char path[256] = "";
+  size_t used = 0;
+  for (size_t i = 0; i < request->url.segment_count; i++) {
+    int length = snprintf(path + used, sizeof path - used, "/%s", request->url.segments[i]);
+    used += (size_t)length;
+    if (used >= sizeof path - sizeof ".html") {
+      return NULL;
+    }
+  }
+  if (used == 0) {
+    return page_find("/index.html");
+  }
+  const struct static_file *file = page_find(path);
+  if (!file) {
+    strcpy(path + used, ".html");
+    file = page_find(path);
+  }
+  return file;
+}
+
+static void page_reply(const struct request *request, struct reply *reply,
+                       const struct static_file *file) {
+  const char *known = request_header(request, "If-None-Match");
+  reply_header(reply, "ETag", "%s", file->etag);
+  reply_header(reply, "Cache-Control", "no-cache");
+  if (known && strstr(known, file->etag)) {
+    reply->status = 304;
+  } else {
+    reply_static(reply, file->content_type, file->data, file->size);
+  }
+}
+
+bool page_exists(const struct request *request) {
+  return page_of(request) != NULL;
+}
+
+void page_show(struct request *request, struct reply *reply) {
+  page_reply(request, reply, page_of(request));
+}
+
+void page_job(struct request *request, struct reply *reply) {
+  const struct static_file *file = page_find("/job.html");
+  int64_t id;
+  if (!request_id(request, reply, &id)) {
+    return;
+  }
+  file = file ? file : page_find("/index.html");
+  if (file) {
+    page_reply(request, reply, file);
+  } else {
+    reply_problem(reply, 404, "not_found", "This build carries no pages.");
+  }
+}

@@ -1,0 +1,98 @@
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "server/http/handlers.h"
+#include "server/plot/plot.h"
+
+enum { OVERLAY_MAX = 12, WIDTH = 800, HEIGHT = 600, SIDE_MIN = 320, SIDE_MAX = 2400 };
+
+/* One job to draw with what plot_input points to. */
+struct drawing {
+  struct job_record record;
+  json_t *result;
+  char artifacts_dir[PATH_MAX];
+};
+
+static void drawing_clear(struct drawing *drawing) {
+  job_record_clear(&drawing->record);
+  json_decref(drawing->result);
+}
+
+/* Reads a job with its result; *drawing is zeroed before. STATUS_NOT_FOUND without a result. */
+static enum status drawing_read(const struct service *service, int64_t id, struct drawing *drawing,
+                                struct plot_input *input, struct error *error) {
+  char *text = NULL, *directory = NULL;
+  enum status status = store_job(service->store, id, &drawing->record, error);
+  if (status == STATUS_OK) {
+    status = store_result(service->store, id, &text, &directory, error);
+  }
+  if (status == STATUS_OK) {
+    int length = snprintf(drawing->artifacts_dir, sizeof drawing->artifacts_dir, "%s/%s/out",
+                          service->data, directory);
+    drawing->result = json_loads(text, 0, NULL);
+    if (!drawing->result || length < 0 || (size_t)length >= sizeof drawing->artifacts_dir) {
+      status = error_set(error, STATUS_NO_MEMORY, NULL, "The result of job %lld cannot be read.",
+                         (long long)id);
+    }
+    *input = (struct plot_input){.result = drawing->result,
+                                 .artifacts_dir = drawing->artifacts_dir,
+                                 .title = drawing->record.name,
+                                 .job_id = drawing->record.id,
+                                 .spec_hash = drawing->record.spec_hash};
+  }
+  free(text);
+  free(directory);
+  return status;
+}
+
+/* Draws the jobs and replies with the picture or the reason why there is none. */
+static void plot_reply(struct request *request, struct reply *reply, const char *plot,
+                       const int64_t *ids, size_t count) {
+  struct error error = {.status = STATUS_OK};
+  struct plot_input inputs[OVERLAY_MAX];
+  unsigned char *png = NULL;
+  size_t size = 0;
+  int64_t width, height;
+  if (!request_query_integer(request, reply, "width", SIDE_MIN, SIDE_MAX, WIDTH, &width) ||
+      !request_query_integer(request, reply, "height", SIDE_MIN, SIDE_MAX, HEIGHT, &height)) {
+    return;
+  }
+  struct drawing *drawings = calloc(count, sizeof *drawings);
+  enum status status =
+      drawings ? STATUS_OK : error_set(&error, STATUS_NO_MEMORY, NULL, "No memory for a picture.");
+  for (size_t i = 0; i < count && status == STATUS_OK; i++) {
+    status = drawing_read(request->service, ids[i], &drawings[i], &inputs[i], &error);
+  }
+  if (status == STATUS_OK) {
+    status = plot_render(plot, inputs, count, (int)width, (int)height, &png, &size, &error);
+  }
+  if (status == STATUS_OK) {
+    reply_text(reply, "image/png", (char *)png, size);
+  } else {
+    reply_error(reply, &error);
+  }
+  for (size_t i = 0; drawings && i < count; i++) {
+    drawing_clear(&drawings[i]);
+  }
+  free(drawings);
+}
+
+void plot_job(struct request *request, struct reply *reply) {
+  static const char *const known[] = {"width", "height", NULL};
+  int64_t id;
+  if (request_id(request, reply, &id) && request_query_known(request, reply, known)) {
+    plot_reply(request, reply, request->parameters[1], &id, 1);
+  }
+}
+
+void plot_overlay(struct request *request, struct reply *reply) {
+  static const char *const known[] = {"jobs", "width", "height", NULL};
+  int64_t ids[OVERLAY_MAX];
+  size_t count;
+  if (request_query_known(request, reply, known) &&
+      request_query_jobs(request, reply, OVERLAY_MAX, ids, &count)) {
+    plot_reply(request, reply, "overlay", ids, count);
+  }
+}

@@ -1,0 +1,166 @@
+#include <fcntl.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "server/http/service.h"
+
+void reply_init(struct reply *reply) {
+  *reply = (struct reply){.status = 200, .fd = -1};
+}
+
+void reply_clear(struct reply *reply) {
+  free(reply->body);
+  if (reply->fd >= 0) {
+    close(reply->fd);
+  }
+  reply_init(reply);
+}
+
+void reply_header(struct reply *reply, const char *name, const char *format, ...) {
+  if (reply->header_count == REPLY_HEADERS_MAX) {
+    return;
+  }
+  size_t at = reply->header_count++;
+  reply->headers[at].name = name;
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(reply->headers[at].value, sizeof reply->headers[at].value, format, arguments);
+  va_end(arguments);
+}
+
+static void reply_no_memory(struct reply *reply) {
+  static const char text[] = "{\"type\":\"urn:pneulab:no_memory\",\"title\":\"memory ran out\","
+                             "\"status\":503,\"code\":\"no_memory\"}\n";
+  reply->status = 503;
+  reply_static(reply, "application/problem+json", text, sizeof text - 1);
+}
+
+static void reply_json_typed(struct reply *reply, unsigned status, const char *content_type,
+                             json_t *value) {
+  char *text = value ? json_dumps(value, JSON_INDENT(2) | JSON_REAL_PRECISION(15)) : NULL;
+  json_decref(value);
+  reply->status = status;
+  reply_text(reply, content_type, text, text ? strlen(text) : 0);
+}
+
+void reply_json(struct reply *reply, unsigned status, json_t *value) {
+  reply_json_typed(reply, status, "application/json", value);
+}
+
+void reply_text(struct reply *reply, const char *content_type, char *text, size_t size) {
+  if (!text) {
+    reply_no_memory(reply);
+    return;
+  }
+  free(reply->body);
+  reply->body = text;
+  reply->static_body = NULL;
+  reply->size = size;
+  reply->content_type = content_type;
+}
+
+void reply_static(struct reply *reply, const char *content_type, const void *data, size_t size) {
+  free(reply->body);
+  reply->body = NULL;
+  reply->static_body = data;
+  reply->size = size;
+  reply->content_type = content_type;
+}
+
+void reply_file(struct reply *reply, const char *content_type, const char *path) {
+  struct stat info;
+  int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  if (fd < 0 || fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) {
+    if (fd >= 0) {
+      close(fd);
+    }
+    reply_problem(reply, 404, "not_found", "The file is not there.");
+    return;
+  }
+  reply->fd = fd;
+  reply->size = (size_t)info.st_size;
+  reply->content_type = content_type;
+}
+
+static json_t *problem_make(unsigned status, const char *code, const char *title,
+                            const char *detail) {
+  char type[100];
+  snprintf(type, sizeof type, "urn:pneulab:%s", code);
+  return json_pack("{s:s, s:s, s:i, s:s, s:s}", "type", type, "title", title, "status", (int)status,
+                   "detail", detail, "code", code);
+}
+
+/* The general meaning of an HTTP status, as a problem's title. */
+static const char *status_title(unsigned status) {
+  static const struct {
+    unsigned status;
+    const char *title;
+  } titles[] = {{400, "the request is malformed"},
+                {403, "the request is not allowed from there"},
+                {404, "the named thing does not exist"},
+                {405, "the resource does not offer this method"},
+                {409, "the request does not fit the present state"},
+                {413, "the request body is too large"},
+                {421, "the request is meant for another server"},
+                {422, "the content breaks a rule"},
+                {501, "the request needs something that is not offered"},
+                {503, "the service cannot do this now"}};
+  for (size_t i = 0; i < sizeof titles / sizeof *titles; i++) {
+    if (titles[i].status == status) {
+      return titles[i].title;
+    }
+  }
+  return "the request failed";
+}
+
+void reply_problem(struct reply *reply, unsigned status, const char *code, const char *format,
+                   ...) {
+  char detail[500];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(detail, sizeof detail, format, arguments);
+  va_end(arguments);
+  json_t *problem = problem_make(status, code, status_title(status), detail);
+  if (!problem) { /* a detail cut inside a character of its input */
+    problem = problem_make(status, code, status_title(status), status_title(status));
+  }
+  reply_json_typed(reply, status, "application/problem+json", problem);
+}
+
+static unsigned error_http_status(enum status status) {
+  switch (status) {
+  case STATUS_SYNTAX:
+    return 400;
+  case STATUS_INVALID:
+  case STATUS_GEOMETRY:
+    return 422;
+  case STATUS_NOT_FOUND:
+    return 404;
+  case STATUS_CONFLICT:
+    return 409;
+  case STATUS_TOO_LARGE:
+    return 413;
+  case STATUS_NO_MEMORY:
+    return 503;
+  default:
+    return 500;
+  }
+}
+
+void reply_error(struct reply *reply, const struct error *error) {
+  unsigned status = error_http_status(error->status);
+  json_t *problem = problem_make(status, status_word(error->status), status_sentence(error->status),
+                                 error->message);
+  if (problem && error->status <= STATUS_GEOMETRY) {
+    json_object_set_new(problem, "pointer", json_string(error->pointer));
+  }
+  if (problem && error->line > 0) {
+    json_object_set_new(problem, "line", json_integer(error->line));
+    json_object_set_new(problem, "column", json_integer(error->column));
+  }
+  reply_json_typed(reply, status, "application/problem+json", problem);
+}

@@ -1,0 +1,111 @@
+#include "server/http/route.h"
+
+#include <string.h>
+
+#include "server/http/handlers.h"
+
+/* A segment in braces is a parameter; what follows the brace must end the segment. */
+static const struct route {
+  enum http_method method;
+  const char *pattern;
+  handler *handle;
+} routes[] = {
+    {HTTP_GET, "api/v1/jobs", jobs_list},
+    {HTTP_POST, "api/v1/jobs", jobs_submit},
+    {HTTP_POST, "api/v1/jobs:validate", jobs_validate},
+    {HTTP_GET, "api/v1/jobs/{id}", job_show},
+    {HTTP_DELETE, "api/v1/jobs/{id}", job_delete},
+    {HTTP_POST, "api/v1/jobs/{id}/cancel", job_cancel},
+    {HTTP_POST, "api/v1/jobs/{id}/retry", job_retry},
+    {HTTP_POST, "api/v1/jobs/{id}/hold", job_hold},
+    {HTTP_POST, "api/v1/jobs/{id}/release", job_release},
+    {HTTP_GET, "api/v1/jobs/{id}/document", job_document},
+    {HTTP_GET, "api/v1/jobs/{id}/result", result_show},
+    {HTTP_GET, "api/v1/jobs/{id}/metrics", result_metrics},
+    {HTTP_GET, "api/v1/jobs/{id}/samples.csv", result_samples},
+    {HTTP_GET, "api/v1/jobs/{id}/artifacts/{name}", result_artifact},
+    {HTTP_GET, "api/v1/jobs/{id}/attempts", attempts_list},
+    {HTTP_GET, "api/v1/jobs/{id}/log", attempts_log},
+    {HTTP_GET, "api/v1/jobs/{id}/plots/{plot}.png", plot_job},
+    {HTTP_GET, "api/v1/plots/overlay.png", plot_overlay},
+    {HTTP_GET, "api/v1/compare", compare_show},
+    {HTTP_GET, "api/v1/materials", catalogue_materials},
+    {HTTP_GET, "api/v1/schemas/{name}", catalogue_schema},
+    {HTTP_GET, "openapi.yaml", catalogue_openapi},
+    {HTTP_GET, "healthz", health_live},
+    {HTTP_GET, "readyz", health_ready},
+    {HTTP_GET, "metrics", health_metrics},
+    {HTTP_GET, "jobs/{id}", page_job},
+};
+
+/* Matches one segment; a parameter's value is put into *parameter (its suffix cut off). */
+static bool segment_match(const char *pattern, size_t length, char *segment, char **cut,
+                          const char **parameter) {
+  if (pattern[0] != '{') {
+    return strlen(segment) == length && memcmp(segment, pattern, length) == 0;
+  }
+  const char *suffix = memchr(pattern, '}', length);
+  size_t suffix_length = length - (size_t)(++suffix - pattern);
+  size_t segment_length = strlen(segment);
+  if (segment_length <= suffix_length ||
+      memcmp(segment + segment_length - suffix_length, suffix, suffix_length) != 0) {
+    return false;
+  }
+  *cut = segment + segment_length - suffix_length;
+  *parameter = segment;
+  return true;
+}
+
+static bool route_match(const struct route *route, struct request *request) {
+  const char *pattern = route->pattern;
+  size_t parameter_count = 0;
+  char *cuts[2] = {NULL, NULL};
+  for (size_t i = 0; i < request->url.segment_count; i++) {
+    size_t length = strcspn(pattern, "/");
+    const char *parameter = NULL;
+    if (length == 0 || !segment_match(pattern, length, (char *)request->url.segments[i],
+                                      &cuts[parameter_count], &parameter)) {
+      return false;
+    }
+    if (parameter) {
+      request->parameters[parameter_count++] = parameter;
+    }
+    pattern += length + (pattern[length] == '/');
+  }
+  if (*pattern != '\0') {
+    return false;
+  }
+  for (size_t i = 0; i < parameter_count; i++) {
+    *cuts[i] = '\0';
+  }
+  return true;
+}
+
+handler *route_find(struct request *request, struct reply *reply) {
+  char allowed[40] = "";
+  for (size_t i = 0; i < sizeof routes / sizeof *routes; i++) {
+    if (!route_match(&routes[i], request)) {
+      continue;
+    }
+    if (routes[i].method == request->method) {
+      return routes[i].handle;
+    }
+    strcat(allowed, allowed[0] ? ", " : "");
+    strcat(allowed, routes[i].method == HTTP_GET    ? "GET, HEAD"
+                    : routes[i].method == HTTP_POST ? "POST"
+                                                    : "DELETE");
+  }
+  if (!allowed[0] && page_exists(request)) {
+    if (request->method == HTTP_GET) {
+      return page_show;
+    }
+    strcpy(allowed, "GET, HEAD");
+  }
+  if (allowed[0]) {
+    reply_problem(reply, 405, "method_not_allowed", "This resource offers %s.", allowed);
+    reply_header(reply, "Allow", "%s", allowed);
+  } else {
+    reply_problem(reply, 404, "not_found", "There is nothing under this path; see /openapi.yaml.");
+  }
+  return NULL;
+}

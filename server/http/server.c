@@ -1,0 +1,402 @@
+#include "server/http/server.h"
+
+#include <arpa/inet.h>
+#include <microhttpd.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "server/base/clock.h"
+#include "server/http/connections.h"
+#include "server/http/guard.h"
+#include "server/http/route.h"
+#include "server/http/waiters.h"
+
+enum {
+  THREADS = 4,
+  CONNECTIONS_MAX = 500,
+  IDLE_TIMEOUT_S = 15,
+  TICK_MS = 200,
+  /* Bodies over the limit are read to their end, so that the client sees the answer, unless they
+   * are longer than this. */
+  BODY_DISCARD_MAX = 16 << 20
+};
+
+struct server {
+  struct service *service;
+  struct connections *connections;
+  struct MHD_Daemon *daemon;
+  pthread_t ticker;
+  pthread_mutex_t mutex; /* guards stopping */
+  pthread_cond_t stop;
+  bool stopping, ticking;
+};
+
+/* A request while libmicrohttpd delivers it in pieces. */
+struct exchange {
+  struct request request;
+  struct reply reply; /* prepared before the body has been read, if status is not 0 */
+  handler *handle;
+  size_t body_room, received;
+  enum { EXCHANGE_NEW, EXCHANGE_BODY, EXCHANGE_WAITING } phase;
+  bool parsed;
+};
+
+void server_job_changed(struct service *service, int64_t job_id) {
+  struct job_record record;
+  if (!waiters_want(service->waiters, job_id) ||
+      store_job(service->store, job_id, &record, NULL) != STATUS_OK) {
+    return;
+  }
+  if (job_state_terminal(record.state)) {
+    waiters_job_ended(service->waiters, job_id);
+  }
+  job_record_clear(&record);
+}
+
+/* ---- sending ----------------------------------------------------------------------------- */
+
+static struct MHD_Response *response_make(struct reply *reply) {
+  struct MHD_Response *response;
+  if (reply->fd >= 0) {
+    response = MHD_create_response_from_fd(reply->size, reply->fd);
+    reply->fd = response ? -1 : reply->fd;
+  } else if (reply->body) {
+    response = MHD_create_response_from_buffer(reply->size, reply->body, MHD_RESPMEM_MUST_FREE);
+    reply->body = response ? NULL : reply->body;
+  } else {
+    response = MHD_create_response_from_buffer(reply->size, (void *)(uintptr_t)reply->static_body,
+                                               MHD_RESPMEM_PERSISTENT);
+  }
+  return response;
+}
+
+static enum MHD_Result reply_send(struct exchange *exchange, struct reply *reply) {
+  struct MHD_Response *response = response_make(reply);
+  if (!response) {
+    reply_clear(reply);
+    return MHD_NO;
+  }
+  bool cached = false;
+  for (size_t i = 0; i < reply->header_count; i++) {
+    MHD_add_response_header(response, reply->headers[i].name, reply->headers[i].value);
+    cached = cached || strcmp(reply->headers[i].name, "Cache-Control") == 0;
+  }
+  if (reply->content_type) {
+    MHD_add_response_header(response, "Content-Type", reply->content_type);
+  }
+  if (!cached) {
+    MHD_add_response_header(response, "Cache-Control", "no-store");
+  }
+  MHD_add_response_header(response, "X-Content-Type-Options", "nosniff");
+  MHD_add_response_header(response, "Referrer-Policy", "no-referrer");
+  MHD_add_response_header(response, "Content-Security-Policy",
+                          "default-src 'self'; frame-ancestors 'none'; base-uri 'none'; "
+                          "form-action 'self'");
+  if (reply->close) {
+    MHD_add_response_header(response, "Connection", "close");
+  }
+  enum MHD_Result result =
+      MHD_queue_response(exchange->request.connection, reply->status, response);
+  MHD_destroy_response(response);
+  if (reply->status / 100 < 6) {
+    atomic_fetch_add(&exchange->request.service->requests[reply->status / 100], 1);
+  }
+  reply_clear(reply);
+  return result;
+}
+
+/* ---- receiving --------------------------------------------------------------------------- */
+
+static struct connection *exchange_connection(const struct exchange *exchange) {
+  const union MHD_ConnectionInfo *info =
+      MHD_get_connection_info(exchange->request.connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
+  return info ? info->socket_context : NULL;
+}
+
+/* Understands the header: fills exchange->handle, or prepares the reply that refuses it. */
+static void exchange_open(struct exchange *exchange, const char *method, const char *version) {
+  struct request *request = &exchange->request;
+  struct reply *reply = &exchange->reply;
+  reply_init(reply);
+  if (strcmp(method, "GET") == 0 || strcmp(method, "HEAD") == 0) {
+    request->method = HTTP_GET;
+  } else if (strcmp(method, "POST") == 0) {
+    request->method = HTTP_POST;
+  } else if (strcmp(method, "DELETE") == 0) {
+    request->method = HTTP_DELETE;
+  }
+  const char *problem = url_parse(request->target, &request->url);
+  if (problem) {
+    reply_problem(reply, 400, "malformed_target", "%s", problem);
+    reply->close = true;
+    return;
+  }
+  if (!guard_check(request, version, reply)) {
+    return;
+  }
+  exchange->handle = route_find(request, reply);
+  const char *length = request_header(request, "Content-Length");
+  if (exchange->handle && length && strtoull(length, NULL, 10) > HTTP_BODY_MAX) {
+    exchange->handle = NULL;
+    reply_problem(reply, 413, "too_large", "The body may have at most %d bytes.", HTTP_BODY_MAX);
+    reply->close = true;
+  }
+}
+
+/* Whether the refusal has to be sent before the body: when the client waits for a go-ahead, when
+ * its length cannot be trusted, or when it is too long to be thrown away. */
+static bool exchange_refuse_now(const struct exchange *exchange) {
+  const char *length = request_header(&exchange->request, "Content-Length");
+  const char *expect = request_header(&exchange->request, "Expect");
+  return !exchange->handle && (expect || exchange->reply.status != 413 ||
+                               (length && strtoull(length, NULL, 10) > BODY_DISCARD_MAX));
+}
+
+/* Takes a piece of the body; MHD_NO ends the connection. */
+static enum MHD_Result exchange_body(struct exchange *exchange, const char *data, size_t *size) {
+  struct request *request = &exchange->request;
+  exchange->received += *size;
+  if (exchange->received > BODY_DISCARD_MAX) {
+    return MHD_NO;
+  }
+  if (exchange->handle && exchange->received > HTTP_BODY_MAX) {
+    exchange->handle = NULL;
+    reply_problem(&exchange->reply, 413, "too_large", "The body may have at most %d bytes.",
+                  HTTP_BODY_MAX);
+    exchange->reply.close = true;
+  }
+  if (exchange->handle) {
+    if (exchange->received + 1 > exchange->body_room) {
+      size_t room = 2 * (exchange->received + 1);
+      char *grown = realloc(request->body, room);
+      if (!grown) {
+        return MHD_NO;
+      }
+      request->body = grown;
+      exchange->body_room = room;
+    }
+    memcpy(request->body + request->body_size, data, *size);
+    request->body_size += *size;
+    request->body[request->body_size] = '\0';
+  }
+  *size = 0;
+  return MHD_YES;
+}
+
+/* Suspends the connection until the job that the reply waits for has ended. */
+static enum MHD_Result exchange_wait(struct exchange *exchange, const struct reply *reply) {
+  struct service *service = exchange->request.service;
+  struct MHD_Connection *connection = exchange->request.connection;
+  int64_t job_id = reply->wait_job_id;
+  exchange->phase = EXCHANGE_WAITING;
+  exchange->handle = reply->then;
+  MHD_suspend_connection(connection);
+  if (!waiters_add(service->waiters, connection, job_id, reply->wait_ms)) {
+    MHD_resume_connection(connection);
+    return MHD_YES;
+  }
+  /* From here on another thread may resume and even finish the exchange. */
+  struct job_record record;
+  bool gone = store_job(service->store, job_id, &record, NULL) != STATUS_OK;
+  if (gone || job_state_terminal(record.state)) {
+    waiters_job_ended(service->waiters, job_id);
+  }
+  if (!gone) {
+    job_record_clear(&record);
+  }
+  return MHD_YES;
+}
+
+static enum MHD_Result exchange_answer(struct exchange *exchange) {
+  struct reply reply;
+  if (!exchange->handle) {
+    return reply_send(exchange, &exchange->reply);
+  }
+  reply_init(&reply);
+  exchange->handle(&exchange->request, &reply);
+  if (reply.wait_job_id != 0) {
+    return exchange_wait(exchange, &reply);
+  }
+  return reply_send(exchange, &reply);
+}
+
+static enum MHD_Result server_handle(void *context, struct MHD_Connection *connection,
+                                     const char *url, const char *method, const char *version,
+                                     const char *data, size_t *size, void **state) {
+  struct server *server = context;
+  struct exchange *exchange = *state;
+  (void)url; /* the target as received is in the exchange */
+  if (!exchange) {
+    return MHD_NO;
+  }
+  if (exchange->phase == EXCHANGE_NEW) {
+    exchange->phase = EXCHANGE_BODY;
+    exchange->request.connection = connection;
+    exchange->request.service = server->service;
+    exchange_open(exchange, method, version);
+    connections_phase(server->connections, exchange_connection(exchange), CONNECTION_BODY);
+    return exchange_refuse_now(exchange) ? reply_send(exchange, &exchange->reply) : MHD_YES;
+  }
+  if (*size > 0) {
+    return exchange_body(exchange, data, size);
+  }
+  if (exchange->phase == EXCHANGE_BODY) {
+    connections_phase(server->connections, exchange_connection(exchange), CONNECTION_ANSWER);
+  }
+  return exchange_answer(exchange);
+}
+
+/* Called with the request line: the exchange starts here, with the target as it was sent. */
+static void *server_note_target(void *context, const char *target,
+                                struct MHD_Connection *connection) {
+  (void)context;
+  (void)connection;
+  struct exchange *exchange = calloc(1, sizeof *exchange);
+  if (exchange) {
+    reply_init(&exchange->reply);
+    exchange->request.target = strdup(target);
+    if (!exchange->request.target) {
+      free(exchange);
+      exchange = NULL;
+    }
+  }
+  return exchange;
+}
+
+static void server_completed(void *context, struct MHD_Connection *connection, void **state,
+                             enum MHD_RequestTerminationCode code) {
+  struct server *server = context;
+  struct exchange *exchange = *state;
+  (void)code;
+  if (!exchange) {
+    return;
+  }
+  exchange->request.connection = connection;
+  connections_phase(server->connections, exchange_connection(exchange), CONNECTION_HEADER);
+  reply_clear(&exchange->reply);
+  free(exchange->request.body);
+  free(exchange->request.target);
+  free(exchange);
+  *state = NULL;
+}
+
+static void server_connection(void *context, struct MHD_Connection *connection,
+                              void **socket_context, enum MHD_ConnectionNotificationCode code) {
+  struct server *server = context;
+  if (code == MHD_CONNECTION_NOTIFY_STARTED) {
+    const union MHD_ConnectionInfo *info =
+        MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
+    *socket_context = info ? connections_add(server->connections, info->connect_fd) : NULL;
+  } else {
+    connections_remove(server->connections, *socket_context);
+    *socket_context = NULL;
+  }
+}
+
+/* libmicrohttpd is to leave escapes alone: url_parse reads the target as it was sent. */
+static size_t server_keep_escapes(void *context, struct MHD_Connection *connection, char *text) {
+  (void)context;
+  (void)connection;
+  return strlen(text);
+}
+
+/* ---- life -------------------------------------------------------------------------------- */
+
+static void *server_tick(void *context) {
+  struct server *server = context;
+  pthread_mutex_lock(&server->mutex);
+  while (!server->stopping) {
+    struct timespec until = clock_deadline(TICK_MS);
+    pthread_cond_timedwait(&server->stop, &server->mutex, &until);
+    pthread_mutex_unlock(&server->mutex);
+    waiters_expire(server->service->waiters, false);
+    connections_expire(server->connections);
+    pthread_mutex_lock(&server->mutex);
+  }
+  pthread_mutex_unlock(&server->mutex);
+  return NULL;
+}
+
+static struct MHD_Daemon *daemon_start(struct server *server, const struct options *options) {
+  struct sockaddr_in four = {.sin_family = AF_INET, .sin_port = htons(options->port)};
+  struct sockaddr_in6 six = {.sin6_family = AF_INET6, .sin6_port = htons(options->port)};
+  bool is_six = inet_pton(AF_INET6, options->address, &six.sin6_addr) == 1;
+  inet_pton(AF_INET, options->address, &four.sin_addr);
+  const void *address = is_six ? (const void *)&six : (const void *)&four;
+  unsigned flags =
+      MHD_USE_EPOLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME | (is_six ? MHD_USE_IPv6 : 0U);
+  return MHD_start_daemon(
+      flags, options->port, NULL, NULL, server_handle, server, MHD_OPTION_SOCK_ADDR, address,
+      MHD_OPTION_THREAD_POOL_SIZE, (unsigned)THREADS, MHD_OPTION_PER_IP_CONNECTION_LIMIT,
+      options->connections_per_address, MHD_OPTION_CONNECTION_LIMIT, (unsigned)CONNECTIONS_MAX,
+      MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)IDLE_TIMEOUT_S, MHD_OPTION_STRICT_FOR_CLIENT, 1,
+      MHD_OPTION_URI_LOG_CALLBACK, server_note_target, server, MHD_OPTION_UNESCAPE_CALLBACK,
+      server_keep_escapes, NULL, MHD_OPTION_NOTIFY_COMPLETED, server_completed, server,
+      MHD_OPTION_NOTIFY_CONNECTION, server_connection, server, MHD_OPTION_END);
+}
+
+enum status server_create(const struct options *options, struct service *service,
+                          struct server **server, struct error *error) {
+  struct server *made = calloc(1, sizeof *made);
+  if (!made) {
+    return error_set(error, STATUS_NO_MEMORY, NULL, "No memory for the server.");
+  }
+  made->service = service;
+  pthread_condattr_t monotonic;
+  pthread_condattr_init(&monotonic);
+  pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
+  pthread_mutex_init(&made->mutex, NULL);
+  pthread_cond_init(&made->stop, &monotonic);
+  pthread_condattr_destroy(&monotonic);
+  enum status status =
+      connections_create((int64_t)(1000 * options->header_timeout_s), &made->connections, error);
+  if (status == STATUS_OK && !(made->daemon = daemon_start(made, options))) {
+    status = error_set(error, STATUS_IO, NULL, "Cannot listen on %s port %u.", options->address,
+                       options->port);
+  }
+  if (status == STATUS_OK && pthread_create(&made->ticker, NULL, server_tick, made) != 0) {
+    status = error_set(error, STATUS_NO_MEMORY, NULL, "Cannot start a thread.");
+  }
+  made->ticking = status == STATUS_OK;
+  if (status != STATUS_OK) {
+    server_destroy(made);
+    return status;
+  }
+  *server = made;
+  return STATUS_OK;
+}
+
+uint16_t server_port(const struct server *server) {
+  const union MHD_DaemonInfo *info = MHD_get_daemon_info(server->daemon, MHD_DAEMON_INFO_BIND_PORT);
+  return info ? info->port : 0;
+}
+
+void server_stop_accepting(struct server *server) {
+  MHD_socket listening = MHD_quiesce_daemon(server->daemon);
+  if (listening != MHD_INVALID_SOCKET) {
+    close(listening);
+  }
+}
+
+void server_destroy(struct server *server) {
+  if (!server) {
+    return;
+  }
+  if (server->ticking) {
+    pthread_mutex_lock(&server->mutex);
+    server->stopping = true;
+    pthread_cond_broadcast(&server->stop);
+    pthread_mutex_unlock(&server->mutex);
+    pthread_join(server->ticker, NULL);
+  }
+  waiters_expire(server->service->waiters, true);
+  if (server->daemon) {
+    MHD_stop_daemon(server->daemon);
+  }
+  connections_destroy(server->connections);
+  pthread_cond_destroy(&server->stop);
+  pthread_mutex_destroy(&server->mutex);
+  free(server);
+}

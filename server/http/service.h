@@ -1,0 +1,129 @@
+/* What every handler may use, and the form of requests and replies. */
+#ifndef PNEULAB_HTTP_SERVICE_H
+#define PNEULAB_HTTP_SERVICE_H
+
+#include <jansson.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "server/exec/pool.h"
+#include "server/http/url.h"
+#include "server/store/store.h"
+
+struct MHD_Connection;
+struct waiters;
+
+enum { HTTP_BODY_MAX = 1 << 20, HTTP_WAIT_MAX_S = 60 };
+
+/* Shared by all requests; everything pointed to outlives the server. */
+struct service {
+  struct store *store;
+  struct pool *pool;
+  struct waiters *waiters;
+  const char *data;          /* data directory */
+  bool loopback;             /* listening on a loopback address: Host must be one too */
+  int64_t started_ms;        /* on the monotonic clock */
+  atomic_bool draining;      /* no new jobs */
+  atomic_ullong requests[6]; /* answered, by first digit of the status */
+};
+
+enum http_method {
+  HTTP_GET = 1,
+  HTTP_POST = 2,
+  HTTP_DELETE = 4 /* bits, so that a set of them is a number */
+};
+
+struct request {
+  struct service *service;
+  struct MHD_Connection *connection;
+  enum http_method method; /* HEAD counts as GET: the body is left out while sending */
+  char *target;            /* as received, then cut into pieces by url_parse */
+  struct url url;
+  const char *parameters[2]; /* of the route, in order */
+  int64_t job_id;            /* of the job that the request waits for */
+  char *body;                /* NUL-terminated; NULL when empty */
+  size_t body_size;
+};
+
+struct reply;
+typedef void handler(struct request *request, struct reply *reply);
+
+enum { REPLY_HEADERS_MAX = 4 };
+
+/* What a handler fills in. Exactly one of the bodies is used. */
+struct reply {
+  unsigned status;
+  const char *content_type;
+  char *body;              /* malloc'd, taken over by the reply */
+  const void *static_body; /* of the program itself */
+  size_t size;
+  int fd; /* -1, or an open file of `size` bytes, taken over */
+  struct {
+    const char *name;
+    char value[200];
+  } headers[REPLY_HEADERS_MAX];
+  size_t header_count;
+  bool close; /* end the connection afterwards */
+  /* Instead of replying now: call `then` once the job is terminal or the time is over. */
+  int64_t wait_job_id;
+  int64_t wait_ms;
+  handler *then;
+};
+
+/* ---- reply.c ----------------------------------------------------------------------------- */
+
+void reply_init(struct reply *reply);
+void reply_clear(struct reply *reply);
+
+/* Adds a header; the value is cut at its field's size. */
+void reply_header(struct reply *reply, const char *name, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* Replies with a JSON value, whose reference is taken over; NULL (no memory) becomes a 503. */
+void reply_json(struct reply *reply, unsigned status, json_t *value);
+
+/* Replies with text from the heap, taken over; NULL becomes a 503. */
+void reply_text(struct reply *reply, const char *content_type, char *text, size_t size);
+
+/* Replies with bytes of the program. */
+void reply_static(struct reply *reply, const char *content_type, const void *data, size_t size);
+
+/* Replies with a regular file, which is not followed if it is a link; 404 when it is missing. */
+void reply_file(struct reply *reply, const char *content_type, const char *path);
+
+/* Replies with an RFC 9457 problem of an HTTP status of its own. */
+void reply_problem(struct reply *reply, unsigned status, const char *code, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+/* The same from a failure: the HTTP status follows from error->status. */
+void reply_error(struct reply *reply, const struct error *error);
+
+/* ---- request.c --------------------------------------------------------------------------- */
+
+/* A request header, NULL when absent. Valid during the request. */
+const char *request_header(const struct request *request, const char *name);
+
+/* The first route parameter as a job id; otherwise replies 404 and returns false. */
+bool request_id(const struct request *request, struct reply *reply, int64_t *id);
+
+/* Whether every query parameter is one of the NULL-terminated names (a name ending in '.' allows
+ * all that start with it); otherwise replies 400 and returns false. */
+bool request_query_known(const struct request *request, struct reply *reply,
+                         const char *const *names);
+
+/* A whole number from the query within limits, `otherwise` when absent; replies 400 and returns
+ * false when it is malformed. */
+bool request_query_integer(const struct request *request, struct reply *reply, const char *name,
+                           int64_t low, int64_t high, int64_t otherwise, int64_t *value);
+
+/* The query parameter "jobs=1,2,3" as up to `limit` different ids; replies 400 and returns false
+ * when it is missing or malformed. */
+bool request_query_jobs(const struct request *request, struct reply *reply, size_t limit,
+                        int64_t *ids, size_t *count);
+
+/* Seconds of "Prefer: wait=N", at most HTTP_WAIT_MAX_S, 0 when absent or malformed. */
+int64_t request_wait_s(const struct request *request);
+
+#endif

@@ -1,0 +1,166 @@
+/* pneulabd: accepts jobs over HTTP, keeps them in SQLite, runs pneulab-solve. */
+#include <arpa/inet.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include "server/base/clock.h"
+#include "server/base/file.h"
+#include "server/base/log.h"
+#include "server/base/options.h"
+#include "server/exec/pool.h"
+#include "server/http/guard.h"
+#include "server/http/server.h"
+#include "server/http/waiters.h"
+#include "server/store/store.h"
+
+enum { SIGNAL_POLL_MS = 100 };
+
+/* The parts of the daemon in the order of their making. */
+struct parts {
+  int lock; /* keeps a second daemon away from the data directory */
+  struct service service;
+  struct server *server;
+};
+
+static void job_changed(void *context, int64_t job_id) {
+  server_job_changed(context, job_id);
+}
+
+static enum status data_lock(const char *directory, int *lock, struct error *error) {
+  char path[PATH_MAX];
+  enum status status = file_make_directory(directory, error);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  int length = snprintf(path, sizeof path, "%s/pneulabd.lock", directory);
+  *lock = length > 0 && (size_t)length < sizeof path
+              ? open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644)
+              : -1;
+  if (*lock < 0 || flock(*lock, LOCK_EX | LOCK_NB) != 0) {
+    return error_set(error, STATUS_CONFLICT, NULL,
+                     "Cannot lock the data directory %s: %s. Does another pneulabd use it?",
+                     directory, strerrordesc_np(errno));
+  }
+  return STATUS_OK;
+}
+
+static enum status parts_open(const struct options *options, struct parts *parts,
+                              struct error *error) {
+  struct service *service = &parts->service;
+  int64_t recovered = 0;
+  service->data = options->data;
+  service->loopback =
+      guard_host_is_loopback(options->address) || strcmp(options->address, "::1") == 0;
+  service->started_ms = clock_monotonic_ms();
+  enum status status = data_lock(options->data, &parts->lock, error);
+  if (status == STATUS_OK) {
+    status = store_open(options->data, &service->store, error);
+  }
+  if (status == STATUS_OK) {
+    status = store_recover(service->store, &recovered, error);
+  }
+  if (status == STATUS_OK) {
+    status = waiters_create(&service->waiters, error);
+  }
+  if (status == STATUS_OK) {
+    struct pool_settings settings = {.store = service->store,
+                                     .data = options->data,
+                                     .solver = options->solver,
+                                     .workers = options->workers,
+                                     .memory_limit_bytes = options->memory_limit_bytes,
+                                     .time_limit_s = options->time_limit_s,
+                                     .timeout_margin_s = options->timeout_margin_s,
+                                     .retry_delay_s = options->retry_delay_s,
+                                     .changed = job_changed,
+                                     .context = service};
+    status = pool_create(&settings, &service->pool, error);
+  }
+  if (status == STATUS_OK) {
+    status = server_create(options, service, &parts->server, error);
+  }
+  if (recovered > 0) {
+    log_line("%lld jobs were left open by an earlier run", (long long)recovered);
+  }
+  return status;
+}
+
+static void parts_close(struct parts *parts) {
+  pool_destroy(parts->service.pool);
+  server_destroy(parts->server);
+  waiters_destroy(parts->service.waiters);
+  store_close(parts->service.store);
+  if (parts->lock >= 0) {
+    close(parts->lock);
+  }
+}
+
+/* Running jobs may finish for a while; then they are put back into the queue. A second signal
+ * shortens this. */
+static void drain(struct parts *parts, const sigset_t *signals, double timeout_s) {
+  struct pool *pool = parts->service.pool;
+  struct timespec poll = {.tv_nsec = SIGNAL_POLL_MS * 1000000L};
+  int64_t until = clock_monotonic_ms() + (int64_t)(1000 * timeout_s);
+  atomic_store(&parts->service.draining, true);
+  log_line("shutting down: running jobs have %g s to finish", timeout_s);
+  server_stop_accepting(parts->server);
+  pool_drain(pool);
+  while (!pool_idle(pool)) {
+    if (clock_monotonic_ms() >= until) {
+      pool_stop(pool, false);
+    }
+    if (sigtimedwait(signals, NULL, &poll) > 0) {
+      log_line("shutting down at once");
+      pool_stop(pool, true);
+    }
+  }
+}
+
+static int serve(const struct options *options) {
+  struct parts parts = {.lock = -1};
+  struct error error;
+  sigset_t signals;
+  int received;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  sigprocmask(SIG_BLOCK, &signals, NULL); /* in all threads: they are taken here */
+  signal(SIGPIPE, SIG_IGN);
+  setenv("OPENBLAS_NUM_THREADS", "1", 1); /* for the workers: one core each */
+  enum status status = parts_open(options, &parts, &error);
+  if (status != STATUS_OK) {
+    fprintf(stderr, "pneulabd: %s\n", error.message);
+  } else {
+    bool six = strchr(options->address, ':') != NULL;
+    printf("listening on http://%s%s%s:%u\n", six ? "[" : "", options->address, six ? "]" : "",
+           server_port(parts.server));
+    fflush(stdout);
+    sigwait(&signals, &received);
+    drain(&parts, &signals, options->drain_timeout_s);
+  }
+  parts_close(&parts);
+  return status == STATUS_OK ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+int main(int argc, char **argv) {
+  struct options options;
+  struct error error;
+  if (options_read(argc, argv, &options, &error) != STATUS_OK) {
+    fprintf(stderr, "pneulabd: %s\n", error.message);
+    return 2;
+  }
+  if (options.action == OPTIONS_HELP) {
+    fputs(options_help(), stdout);
+    return EXIT_SUCCESS;
+  }
+  if (options.action == OPTIONS_VERSION) {
+    puts("pneulabd " PNEULAB_VERSION);
+    return EXIT_SUCCESS;
+  }
+  return serve(&options);
+}

@@ -1,0 +1,255 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "server/base/clock.h"
+#include "server/store/connection.h"
+#include "server/store/sql.h"
+
+void job_record_clear(struct job_record *record) {
+  free(record->reason_code);
+  free(record->message);
+  free(record->kind);
+  free(record->name);
+  free(record->spec_hash);
+  json_decref(record->labels);
+  json_decref(record->metrics);
+  json_decref(record->artifacts);
+  *record = (struct job_record){0};
+}
+
+/* Reads a query of one job into a JSON value: take() adds one row to it. */
+static enum status rows_read(sqlite3 *db, const char *sql, int64_t id, json_t *into,
+                             void (*take)(json_t *into, sqlite3_stmt *row), struct error *error) {
+  sqlite3_stmt *statement;
+  enum status status = sql_prepare(db, &statement, error, sql, "i", id);
+  int row = 1;
+  while (status == STATUS_OK) {
+    status = sql_step(statement, &row, error);
+    if (status != STATUS_OK || !row) {
+      break;
+    }
+    take(into, statement);
+  }
+  sqlite3_finalize(statement);
+  return status;
+}
+
+static void take_text(json_t *into, sqlite3_stmt *row) {
+  json_object_set_new(into, sql_text(row, 0), json_string(sql_text(row, 1)));
+}
+
+static void take_number(json_t *into, sqlite3_stmt *row) {
+  json_object_set_new(into, sql_text(row, 0), json_real(sqlite3_column_double(row, 1)));
+}
+
+static void take_name(json_t *into, sqlite3_stmt *row) {
+  json_array_append_new(into, json_string(sql_text(row, 0)));
+}
+
+static void take_parameter(json_t *into, sqlite3_stmt *row) {
+  json_t *value = sqlite3_column_type(row, 1) == SQLITE_NULL
+                      ? json_null()
+                      : json_real(sqlite3_column_double(row, 1));
+  json_object_set_new(into, sql_text(row, 0),
+                      json_pack("{s:o, s:s, s:s}", "value", value, "text", sql_text(row, 2), "unit",
+                                sql_text(row, 3)));
+}
+
+static json_t *optional_integer(sqlite3_stmt *row, int column) {
+  return sqlite3_column_type(row, column) == SQLITE_NULL
+             ? json_null()
+             : json_integer(sqlite3_column_int64(row, column));
+}
+
+static json_t *optional_number(sqlite3_stmt *row, int column) {
+  return sqlite3_column_type(row, column) == SQLITE_NULL
+             ? json_null()
+             : json_real(sqlite3_column_double(row, column));
+}
+
+static json_t *optional_time(sqlite3_stmt *row, int column) {
+  char text[CLOCK_TEXT_SIZE];
+  if (sqlite3_column_type(row, column) == SQLITE_NULL) {
+    return json_null();
+  }
+  clock_format(sqlite3_column_int64(row, column), text);
+  return json_string(text);
+}
+
+static void take_attempt(json_t *into, sqlite3_stmt *row) {
+  json_array_append_new(
+      into, json_pack("{s:I, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "number",
+                      (json_int_t)sqlite3_column_int64(row, 0), "outcome", sql_text(row, 1),
+                      "reason_code", sql_text(row, 2), "pid", optional_integer(row, 3), "exit_code",
+                      optional_integer(row, 4), "signal", optional_integer(row, 5), "started",
+                      optional_time(row, 6), "finished", optional_time(row, 7), "cpu_s",
+                      optional_number(row, 8), "peak_memory_MB", optional_number(row, 9)));
+}
+
+enum status store_record_read(sqlite3 *db, sqlite3_stmt *row, struct job_record *record,
+                              struct error *error) {
+  *record = (struct job_record){.id = sqlite3_column_int64(row, 0),
+                                .reason_code = sql_text_copy(row, 2),
+                                .message = sql_text_copy(row, 3),
+                                .kind = sql_text_copy(row, 4),
+                                .name = sql_text_copy(row, 5),
+                                .spec_hash = sql_text_copy(row, 6),
+                                .attempt = sqlite3_column_int64(row, 7),
+                                .retry_of = sqlite3_column_int64(row, 8),
+                                .created_ms = sqlite3_column_int64(row, 9),
+                                .started_ms = sqlite3_column_int64(row, 10),
+                                .finished_ms = sqlite3_column_int64(row, 11),
+                                .has_result = sqlite3_column_int(row, 12) != 0,
+                                .labels = json_object(),
+                                .metrics = json_object(),
+                                .artifacts = json_array()};
+  enum status status = STATUS_OK;
+  if (!record->reason_code || !record->message || !record->kind || !record->name ||
+      !record->spec_hash || !record->labels || !record->metrics || !record->artifacts) {
+    status = error_set(error, STATUS_NO_MEMORY, NULL, "No memory for a job.");
+  } else if (!job_state_parse(sql_text(row, 1), &record->state)) {
+    status = error_set(error, STATUS_INTERNAL, NULL, "Job %lld has an unknown state.",
+                       (long long)record->id);
+  }
+  if (status == STATUS_OK) {
+    status = rows_read(db, "SELECT name, value FROM job_label WHERE job_id = ?", record->id,
+                       record->labels, take_text, error);
+  }
+  if (status == STATUS_OK && record->has_result) {
+    status = rows_read(db, "SELECT name, value FROM metric WHERE job_id = ?", record->id,
+                       record->metrics, take_number, error);
+  }
+  if (status == STATUS_OK && record->has_result) {
+    status = rows_read(db, "SELECT name FROM artifact WHERE job_id = ?", record->id,
+                       record->artifacts, take_name, error);
+  }
+  if (status != STATUS_OK) {
+    job_record_clear(record);
+  }
+  return status;
+}
+
+enum status store_job(struct store *store, int64_t id, struct job_record *record,
+                      struct error *error) {
+  sqlite3 *db = store_read_begin(store, error);
+  if (!db) {
+    return STATUS_IO;
+  }
+  sqlite3_stmt *statement;
+  int row = 0;
+  enum status status = sql_prepare(db, &statement, error,
+                                   "SELECT " JOB_COLUMNS " FROM job WHERE job.id = ?", "i", id);
+  if (status == STATUS_OK) {
+    status = sql_step(statement, &row, error);
+  }
+  if (status == STATUS_OK) {
+    status = row ? store_record_read(db, statement, record, error) : store_no_job(id, error);
+  }
+  sqlite3_finalize(statement);
+  store_read_end(store, db);
+  return status;
+}
+
+/* Reads up to two texts of one row. STATUS_NOT_FOUND with `missing` when there is no row. */
+static enum status texts_read(struct store *store, const char *sql, int64_t id, char **first,
+                              char **second, const char *missing, struct error *error) {
+  sqlite3 *db = store_read_begin(store, error);
+  if (!db) {
+    return STATUS_IO;
+  }
+  sqlite3_stmt *statement;
+  int row = 0;
+  enum status status = sql_prepare(db, &statement, error, sql, "i", id);
+  if (status == STATUS_OK) {
+    status = sql_step(statement, &row, error);
+  }
+  if (status == STATUS_OK && !row) {
+    status =
+        error_set(error, STATUS_NOT_FOUND, NULL, "There is no %s %lld.", missing, (long long)id);
+  } else if (status == STATUS_OK) {
+    char *one = sql_text_copy(statement, 0);
+    char *two = second ? sql_text_copy(statement, 1) : NULL;
+    if (!one || (second && !two)) {
+      free(one);
+      free(two);
+      status = error_set(error, STATUS_NO_MEMORY, NULL, "No memory for a document.");
+    } else {
+      *first = one;
+      if (second) {
+        *second = two;
+      }
+    }
+  }
+  sqlite3_finalize(statement);
+  store_read_end(store, db);
+  return status;
+}
+
+enum status store_document(struct store *store, int64_t id, char **text, struct error *error) {
+  return texts_read(store, "SELECT document FROM job WHERE id = ?", id, text, NULL, "job", error);
+}
+
+enum status store_result(struct store *store, int64_t id, char **text, char **directory,
+                         struct error *error) {
+  return texts_read(store, "SELECT document, directory FROM result WHERE job_id = ?", id, text,
+                    directory, "result of job", error);
+}
+
+enum status store_artifact(struct store *store, int64_t id, const char *name, struct error *error) {
+  sqlite3 *db = store_read_begin(store, error);
+  if (!db) {
+    return STATUS_IO;
+  }
+  sqlite3_stmt *statement;
+  int row = 0;
+  enum status status =
+      sql_prepare(db, &statement, error, "SELECT 1 FROM artifact WHERE job_id = ? AND name = ?",
+                  "it", id, name);
+  if (status == STATUS_OK) {
+    status = sql_step(statement, &row, error);
+  }
+  if (status == STATUS_OK && !row) {
+    status = error_set(error, STATUS_NOT_FOUND, NULL, "Job %lld has no artifact %.100s.",
+                       (long long)id, name);
+  }
+  sqlite3_finalize(statement);
+  store_read_end(store, db);
+  return status;
+}
+
+/* Reads rows of a job that must exist into *into, which becomes the caller's. */
+static enum status job_rows_read(struct store *store, const char *sql, int64_t id, json_t *fresh,
+                                 void (*take)(json_t *, sqlite3_stmt *), json_t **into,
+                                 struct error *error) {
+  enum job_state state;
+  sqlite3 *db = fresh ? store_read_begin(store, error) : NULL;
+  enum status status = db ? store_state_of(db, id, &state, error) : STATUS_IO;
+  if (status == STATUS_OK) {
+    status = rows_read(db, sql, id, fresh, take, error);
+  }
+  if (db) {
+    store_read_end(store, db);
+  }
+  if (status != STATUS_OK) {
+    json_decref(fresh);
+    fresh = NULL;
+  }
+  *into = fresh;
+  return status;
+}
+
+enum status store_attempts(struct store *store, int64_t id, json_t **attempts,
+                           struct error *error) {
+  return job_rows_read(store,
+                       "SELECT number, outcome, reason_code, pid, exit_code, signal, created_ms, "
+                       "finished_ms, cpu_s, peak_memory_MB FROM attempt WHERE job_id = ? "
+                       "ORDER BY number",
+                       id, json_array(), take_attempt, attempts, error);
+}
+
+enum status store_parameters(struct store *store, int64_t id, json_t **parameters,
+                             struct error *error) {
+  return job_rows_read(store,
+                       "SELECT pointer, value, text, unit FROM design_parameter WHERE job_id = ?",
+                       id, json_object(), take_parameter, parameters, error);
+}

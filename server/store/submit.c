@@ -1,0 +1,166 @@
+#include <string.h>
+
+#include "server/base/clock.h"
+#include "server/store/connection.h"
+#include "server/store/flatten.h"
+#include "server/store/sql.h"
+
+static const char *submission_text(const struct submission *submission, const char *key) {
+  const char *text = json_string_value(json_object_get(submission->root, key));
+  return text ? text : "";
+}
+
+/* Looks for an earlier job with the same idempotency key. *id is 0 when there is none. */
+static enum status submission_find(sqlite3 *db, const struct submission *submission, int64_t *id,
+                                   struct error *error) {
+  sqlite3_stmt *statement;
+  *id = 0;
+  if (!submission->idempotency_key) {
+    return STATUS_OK;
+  }
+  enum status status =
+      sql_prepare(db, &statement, error, "SELECT id, document FROM job WHERE idempotency_key = ?",
+                  "t", submission->idempotency_key);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  int row = 0;
+  status = sql_step(statement, &row, error);
+  if (status == STATUS_OK && row) {
+    *id = sqlite3_column_int64(statement, 0);
+    if (strcmp(sql_text(statement, 1), submission->document) != 0) {
+      status = error_set(error, STATUS_CONFLICT, NULL,
+                         "This Idempotency-Key was used for job %lld with another document. Use a "
+                         "new key for a new job.",
+                         (long long)*id);
+    }
+  }
+  sqlite3_finalize(statement);
+  return status;
+}
+
+static enum status submission_labels(sqlite3 *db, int64_t id, const json_t *labels,
+                                     struct error *error) {
+  const char *name;
+  json_t *value;
+  json_object_foreach((json_t *)labels, name, value) {
+    const char *text = json_string_value(value);
+    if (!text) {
+      continue;
+    }
+    enum status status =
+        sql_run(db, error, "INSERT INTO job_label VALUES (?, ?, ?)", "itt", id, name, text);
+    if (status != STATUS_OK) {
+      return status;
+    }
+  }
+  return STATUS_OK;
+}
+
+static enum status submission_insert(struct store *store, const struct submission *submission,
+                                     int64_t *id, struct error *error) {
+  sqlite3 *db = store->writer;
+  enum status status =
+      sql_run(db, error,
+              "INSERT INTO job (kind, name, document, spec_hash, timeout_s, retry_of, "
+              "idempotency_key, created_ms) VALUES (?, ?, ?, ?, ?, nullif(?, 0), ?, ?)",
+              "ttttditi", submission_text(submission, "kind"), submission_text(submission, "name"),
+              submission->document, submission->spec_hash, submission->timeout_s,
+              submission->retry_of, submission->idempotency_key, clock_unix_ms());
+  if (status != STATUS_OK) {
+    return status;
+  }
+  *id = sqlite3_last_insert_rowid(db);
+  status = submission_labels(db, *id, json_object_get(submission->root, "labels"), error);
+  if (status == STATUS_OK) {
+    status = flatten_store(db, *id, submission->root, store->units, error);
+  }
+  return status;
+}
+
+enum status store_submit(struct store *store, const struct submission *submission, int64_t *id,
+                         bool *replayed, struct error *error) {
+  *replayed = false;
+  enum status status = store_write_begin(store, error);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  status = submission_find(store->writer, submission, id, error);
+  if (status == STATUS_OK && *id != 0) {
+    *replayed = true;
+  } else if (status == STATUS_OK) {
+    status = submission_insert(store, submission, id, error);
+  }
+  return store_write_end(store, status, error);
+}
+
+enum status store_delete(struct store *store, int64_t id, struct error *error) {
+  enum job_state state;
+  enum status status = store_write_begin(store, error);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  status = store_state_of(store->writer, id, &state, error);
+  if (status == STATUS_OK && !job_state_terminal(state)) {
+    status = error_set(error, STATUS_CONFLICT, NULL,
+                       "Job %lld is %s; only a finished job can be deleted. Cancel it first.",
+                       (long long)id, job_state_word(state));
+  }
+  if (status == STATUS_OK) {
+    status = sql_run(store->writer, error, "DELETE FROM result WHERE job_id = ?", "i", id);
+  }
+  if (status == STATUS_OK) {
+    status = sql_run(store->writer, error, "DELETE FROM job WHERE id = ?", "i", id);
+  }
+  return store_write_end(store, status, error);
+}
+
+enum status store_cancel(struct store *store, int64_t id, enum job_state *state,
+                         struct error *error) {
+  enum status status = store_write_begin(store, error);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  status = store_state_of(store->writer, id, state, error);
+  if (status != STATUS_OK) {
+    return store_write_end(store, status, error);
+  }
+  if (job_state_terminal(*state)) {
+    status =
+        error_set(error, STATUS_CONFLICT, NULL, "Job %lld is already %s and cannot be cancelled.",
+                  (long long)id, job_state_word(*state));
+  } else if (*state == JOB_STATE_STARTING || *state == JOB_STATE_RUNNING) {
+    *state = JOB_STATE_CANCELLING;
+    status = sql_run(store->writer, error,
+                     "UPDATE job SET state = 'cancelling', reason_code = 'cancel_requested' "
+                     "WHERE id = ?",
+                     "i", id);
+  } else if (*state != JOB_STATE_CANCELLING) {
+    *state = JOB_STATE_CANCELLED;
+    status = sql_run(store->writer, error,
+                     "UPDATE job SET state = 'cancelled', reason_code = 'cancel_requested', "
+                     "message = 'Cancelled before it started.', finished_ms = ? WHERE id = ?",
+                     "ii", clock_unix_ms(), id);
+  }
+  return store_write_end(store, status, error);
+}
+
+enum status store_hold(struct store *store, int64_t id, bool hold, struct error *error) {
+  enum job_state state;
+  enum status status = store_write_begin(store, error);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  status = store_state_of(store->writer, id, &state, error);
+  if (status == STATUS_OK && state != (hold ? JOB_STATE_QUEUED : JOB_STATE_HELD)) {
+    status =
+        error_set(error, STATUS_CONFLICT, NULL, "Job %lld is %s; only a job that is %s can %s.",
+                  (long long)id, job_state_word(state), hold ? "queued" : "held",
+                  hold ? "be held" : "be released");
+  }
+  if (status == STATUS_OK) {
+    status = sql_run(store->writer, error, "UPDATE job SET state = ? WHERE id = ?", "ti",
+                     hold ? "held" : "queued", id);
+  }
+  return store_write_end(store, status, error);
+}
