@@ -2,7 +2,8 @@
 
 #include <stdarg.h>
 #include <stdio.h>
-#include <string.h>
+
+#include "solver/base/text.h"
 
 const char *status_word(enum status status) {
   static const char *const words[] = {
@@ -22,27 +23,6 @@ const char *status_sentence(enum status status) {
   return (unsigned)status < STATUS_COUNT ? sentences[status] : "unknown status";
 }
 
-/* A field that was full may end inside a UTF-8 character, which no JSON writer would take. */
-static void drop_partial_character(char *field, size_t size) {
-  char *end = field + size - 1;
-  size_t length = strnlen(field, size);
-  if (field + length < end) {
-    return;
-  }
-  size_t start = length;
-  while (start > 0 && ((unsigned char)field[start - 1] & 0xC0) == 0x80) {
-    start--;
-  }
-  if (start == 0) {
-    return;
-  }
-  unsigned char lead = (unsigned char)field[start - 1];
-  size_t wanted = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : lead >= 0xC0 ? 2 : 1;
-  if (length - (start - 1) < wanted) {
-    field[start - 1] = '\0';
-  }
-}
-
 enum status error_set(struct error *error, enum status status, const char *pointer,
                       const char *format, ...) {
   if (!error) {
@@ -54,7 +34,9 @@ enum status error_set(struct error *error, enum status status, const char *point
   va_start(arguments, format);
   vsnprintf(error->message, sizeof error->message, format, arguments);
   va_end(arguments);
-  drop_partial_character(error->pointer, sizeof error->pointer);
-  drop_partial_character(error->message, sizeof error->message);
+  /* Cutting at the field's size, or a library's own message, may break a character; no JSON writer
+   * would take it then. */
+  text_repair(error->pointer);
+  text_repair(error->message);
   return status;
 }

@@ -1,6 +1,7 @@
 #include "solver/base/text.h"
 
 #include <ctype.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -16,6 +17,33 @@ size_t text_prefix(const char *text, size_t limit) {
     length--;
   }
   return length;
+}
+
+/* Length of the UTF-8 character at `at`, 0 when it is malformed (RFC 3629: no overlong forms, no
+ * surrogates, nothing above U+10FFFF). */
+static size_t character_length(const unsigned char *at) {
+  unsigned char lead = at[0];
+  size_t length = lead < 0x80 ? 1 : lead < 0xC2 ? 0 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : 4;
+  for (size_t i = 1; i < length; i++) {
+    if ((at[i] & 0xC0) != 0x80) {
+      return 0;
+    }
+  }
+  bool malformed = lead > 0xF4 || (lead == 0xE0 && at[1] < 0xA0) ||
+                   (lead == 0xED && at[1] > 0x9F) || (lead == 0xF0 && at[1] < 0x90) ||
+                   (lead == 0xF4 && at[1] > 0x8F);
+  return malformed ? 0 : length;
+}
+
+void text_repair(char *text) {
+  while (*text) {
+    size_t length = character_length((const unsigned char *)text);
+    if (length == 0) {
+      *text = '?';
+      length = 1;
+    }
+    text += length;
+  }
 }
 
 const char *text_quote(char *out, size_t size, const char *text) {

@@ -8,6 +8,9 @@
  * Returns its length in bytes. */
 size_t text_prefix(const char *text, size_t limit);
 
+/* Replaces every byte of `text` that is not part of a valid UTF-8 character by '?'. */
+void text_repair(char *text);
+
 /* Writes `text` in double quotes into `out` (`size` >= 8 bytes), shortened with "..." to what
  * fits, control characters replaced by '?'. Returns `out`. */
 const char *text_quote(char *out, size_t size, const char *text);

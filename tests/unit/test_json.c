@@ -60,6 +60,21 @@ static enum status read_nested(int depth, struct error *error) {
   return status;
 }
 
+/* Jansson cuts the place that it quotes in the middle of a character. */
+START_TEST(messages_about_malformed_text_are_valid_text) {
+  char text[200] = "[\"\\\xE2\x82\xAC";
+  while (strlen(text) < 150) {
+    strcat(text, "\xE2\x82\xAC");
+  }
+  json_t *root = NULL;
+  struct error error;
+  ck_assert_int_eq(json_text_read(text, strlen(text), &root, &error), STATUS_SYNTAX);
+  json_t *message = json_string(error.message);
+  ck_assert_ptr_nonnull(message);
+  json_decref(message);
+}
+END_TEST
+
 START_TEST(limits_the_depth) {
   struct error error;
   ck_assert_int_eq(read_nested(32, &error), STATUS_OK);
@@ -150,6 +165,7 @@ int main(void) {
   Suite *suite = suite_create("job: json");
   TCase *tcase = tcase_create("all");
   tcase_add_loop_test(tcase, refuses_malformed_text, 0, sizeof malformed / sizeof *malformed);
+  tcase_add_test(tcase, messages_about_malformed_text_are_valid_text);
   tcase_add_test(tcase, limits_the_depth);
   tcase_add_test(tcase, a_megabyte_of_brackets_is_refused);
   tcase_add_test(tcase, limits_the_size);

@@ -53,6 +53,28 @@ START_TEST(long_messages_end_with_a_whole_character) {
 }
 END_TEST
 
+START_TEST(repair_leaves_whole_characters_alone) {
+  static const char *const pairs[][2] = {
+      {"", ""},
+      {"a\xC3\xA4\xE2\x82\xAC\xF0\x9F\x98\x80z", "a\xC3\xA4\xE2\x82\xAC\xF0\x9F\x98\x80z"},
+      {"a\xFFz", "a?z"},
+      {"\xC3", "?"},
+      {"\xE2\x82", "??"},
+      {"\xC0\x80", "??"},           /* overlong */
+      {"\xE0\x80\x80", "???"},      /* overlong */
+      {"\xED\xA0\x80", "???"},      /* surrogate */
+      {"\xF4\x90\x80\x80", "????"}, /* above U+10FFFF */
+      {"\xF5\x80\x80\x80", "????"},
+  };
+  for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+    char text[40];
+    strcpy(text, pairs[i][0]);
+    text_repair(text);
+    ck_assert_str_eq(text, pairs[i][1]);
+  }
+}
+END_TEST
+
 START_TEST(quoting_shortens_and_cleans) {
   char out[16];
   ck_assert_str_eq(text_quote(out, sizeof out, "short"), "\"short\"");
@@ -95,6 +117,7 @@ int main(void) {
   tcase_add_test(tcase, every_status_has_its_own_word);
   tcase_add_test(tcase, error_set_stores_or_ignores);
   tcase_add_test(tcase, long_messages_end_with_a_whole_character);
+  tcase_add_test(tcase, repair_leaves_whole_characters_alone);
   tcase_add_test(tcase, quoting_shortens_and_cleans);
   tcase_add_test(tcase, distances);
   tcase_add_test(tcase, nearest_word);
