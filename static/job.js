@@ -128,10 +128,7 @@ function showPlots(links) {
 
 function showFiles(job) {
   const links = job.links || {};
-  const files = [['Job document', links.document || jobUrl(id, '/document')]];
-  if (links.document === undefined) {
-    files.pop();
-  }
+  const files = links.document ? [['Job document', links.document]] : [];
   if (hasResult) {
     files.push(['Result (JSON)', links.result || jobUrl(id, '/result')],
       ['Samples (CSV)', links.samples || jobUrl(id, '/samples.csv')]);

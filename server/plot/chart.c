@@ -64,7 +64,7 @@ enum { BAR_GAP = 18, BAR_WIDTH = 16, BAR_TEXT = 7, BAR_LABEL = 24 };
 
 static struct ticks bar_ticks(const struct canvas *canvas, const struct colour_bar *bar,
                               double height) {
-  return ticks_make(bar->min, bar->max, tick_target(canvas, height, 45));
+  return ticks_make(bar->min, bar->max, tick_target(canvas, height, 56));
 }
 
 double chart_bar_room(struct canvas *canvas, const struct colour_bar *bar) {
