@@ -146,7 +146,7 @@ static bool polish(struct equilibrium *s, const struct fe_load *load, struct fe_
     }
     s->last_correction = next;
     /* With a contraction rate the error left is rate / (1 - rate) times the last correction. */
-    double rate = fmin(next / size, 0.5);
+    double rate = isfinite(size) ? fmin(next / size, 0.5) : 0.5;
     if (next * rate / (1 - rate) < tolerance) {
       return true;
     }

@@ -71,6 +71,9 @@ void state_copy(const struct fe_model *model, struct fe_state *to, const struct 
 enum status model_evaluate(struct fe_model *model, const struct fe_state *state,
                            const struct fe_load *load, bool tangent);
 
+/* Renews the gaps of all contact points at the state, whether or not the model uses contact. */
+void model_update_gaps(struct fe_model *model, const struct fe_state *state);
+
 /* Factorises the last tangent; returns the number of negative pivots. */
 int model_factor(struct fe_model *model);
 void model_solve(struct fe_model *model, const double *b, double *x);

@@ -48,17 +48,32 @@ static void add_pressure(const struct fe_model *m, const double *u, const struct
   }
 }
 
+/* Nodes of a contact pair and their current positions. */
+static void pair_positions(const struct fe_model *m, const double *u, int pair,
+                           int nodes[CONTACT_NODES], double x[CONTACT_NODES][3]) {
+  contact_nodes(&m->contact, pair, nodes);
+  for (int a = 0; a < CONTACT_NODES; a++) {
+    for (int i = 0; i < 3; i++) {
+      x[a][i] = m->mesh->x[3 * nodes[a] + i] + u[3 * nodes[a] + i];
+    }
+  }
+}
+
+void model_update_gaps(struct fe_model *m, const struct fe_state *state) {
+  for (int p = 0; p < m->contact.pair_count; p++) {
+    int nodes[CONTACT_NODES];
+    double x[CONTACT_NODES][3], r[CONTACT_DOFS];
+    pair_positions(m, state->u, p, nodes, x);
+    contact_evaluate(&m->contact, p, x, r, NULL);
+  }
+}
+
 static void evaluate_contact(struct fe_model *m, const double *u, bool tangent) {
   const struct mesh *mesh = m->mesh;
   for (int p = 0; p < m->contact.pair_count; p++) {
     int nodes[CONTACT_NODES];
     double x[CONTACT_NODES][3], r[CONTACT_DOFS];
-    contact_nodes(&m->contact, p, nodes);
-    for (int a = 0; a < CONTACT_NODES; a++) {
-      for (int i = 0; i < 3; i++) {
-        x[a][i] = mesh->x[3 * nodes[a] + i] + u[3 * nodes[a] + i];
-      }
-    }
+    pair_positions(m, u, p, nodes, x);
     double *packed = m->contact_value + (size_t)p * CONTACT_PACKED;
     bool touches = contact_evaluate(&m->contact, p, x, r, tangent ? packed : NULL);
     if (tangent) {

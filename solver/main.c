@@ -1,0 +1,170 @@
+/* pneulab-solve: one job document in, one result document out. */
+#include <cblas.h>
+#include <errno.h>
+#include <getopt.h>
+#include <jansson.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "solver/run.h"
+
+enum exit_code {
+  EXIT_SUCCEEDED = 0,
+  EXIT_INVALID_JOB = 2,
+  EXIT_STOPPED_EARLY = 3,
+  EXIT_INTERNAL = 4,
+  EXIT_CANCELLED = 5
+};
+
+/* One byte more than a job may have, so that an oversized one is recognised, not cut. */
+enum { JOB_BYTES_MAX = 1 << 20 };
+
+static volatile sig_atomic_t cancel_requested;
+
+static void on_terminate(int number) {
+  (void)number;
+  cancel_requested = 1;
+}
+
+static bool cancelled(void *context) {
+  (void)context;
+  return cancel_requested != 0;
+}
+
+static const char usage[] =
+    "usage: pneulab-solve [--out DIR] [--events FILE] [--threads N] [--deck FILE] [--verbose] "
+    "JOB.json\n"
+    "  JOB.json        job document; - reads standard input\n"
+    "  --out DIR       write surface.json and surface.vtu there\n"
+    "  --events FILE   append progress as JSON lines\n"
+    "  --threads N     threads of the dense linear algebra (default 1)\n"
+    "  --deck FILE     write the problem as a CalculiX deck instead of solving it\n"
+    "  --verbose       print iterations on standard error\n"
+    "The result document goes to standard output. Exit status: 0 succeeded, 2 invalid job,\n"
+    "3 stopped early (the result says why), 4 internal error, 5 cancelled.\n";
+
+struct arguments {
+  const char *job, *events;
+  int threads;
+  struct run_options run;
+};
+
+static bool parse_arguments(int argc, char **argv, struct arguments *a) {
+  static const struct option options[] = {
+      {"out", required_argument, NULL, 'o'},     {"events", required_argument, NULL, 'e'},
+      {"threads", required_argument, NULL, 't'}, {"deck", required_argument, NULL, 'd'},
+      {"verbose", no_argument, NULL, 'v'},       {"help", no_argument, NULL, 'h'},
+      {"version", no_argument, NULL, 'V'},       {0}};
+  int option;
+  while ((option = getopt_long(argc, argv, "h", options, NULL)) != -1) {
+    switch (option) {
+    case 'o':
+      a->run.out_dir = optarg;
+      break;
+    case 'e':
+      a->events = optarg;
+      break;
+    case 't':
+      a->threads = atoi(optarg);
+      break;
+    case 'd':
+      a->run.deck_path = optarg;
+      break;
+    case 'v':
+      a->run.verbose = true;
+      break;
+    case 'V':
+      puts("pneulab-solve " PNEULAB_VERSION);
+      exit(EXIT_SUCCEEDED);
+    case 'h':
+      fputs(usage, stdout);
+      exit(EXIT_SUCCEEDED);
+    default:
+      return false;
+    }
+  }
+  a->job = optind + 1 == argc ? argv[optind] : NULL;
+  return a->job && a->threads >= 1 && a->threads <= 256;
+}
+
+/* Reads the job's text; *size may exceed JOB_BYTES_MAX by one. The caller frees the result. */
+static char *read_job(const char *path, size_t *size, struct error *error) {
+  FILE *file = strcmp(path, "-") == 0 ? stdin : fopen(path, "r");
+  char *text = malloc(JOB_BYTES_MAX + 1);
+  if (!file || !text) {
+    error_set(error, STATUS_IO, NULL, "cannot read %s: %s", path, strerror(errno));
+    free(text);
+    text = NULL;
+  } else {
+    *size = fread(text, 1, JOB_BYTES_MAX + 1, file);
+    if (ferror(file)) {
+      error_set(error, STATUS_IO, NULL, "reading %s failed: %s", path, strerror(errno));
+      free(text);
+      text = NULL;
+    }
+  }
+  if (file && file != stdin) {
+    fclose(file);
+  }
+  return text;
+}
+
+static void print_document(json_t *document) {
+  json_dumpf(document, stdout, JSON_INDENT(1) | JSON_REAL_PRECISION(10));
+  putchar('\n');
+  json_decref(document);
+}
+
+/* Prints the error as a document and returns the exit code that fits it. */
+static int report(const struct error *error) {
+  bool invalid = error->status == STATUS_INVALID || error->status == STATUS_SYNTAX ||
+                 error->status == STATUS_GEOMETRY || error->status == STATUS_TOO_LARGE;
+  fprintf(stderr, "pneulab-solve: %s%s%s\n", error->pointer, error->pointer[0] ? ": " : "",
+          error->message);
+  print_document(json_pack("{s:s, s:{s:s, s:s, s:s, s:i, s:i}}", "status",
+                           invalid ? "invalid" : "error", "error", "code",
+                           status_word(error->status), "message", error->message, "pointer",
+                           error->pointer, "line", error->line, "column", error->column));
+  return invalid ? EXIT_INVALID_JOB : EXIT_INTERNAL;
+}
+
+int main(int argc, char **argv) {
+  struct arguments a = {.threads = 1, .run.cancelled = cancelled};
+  struct error error = {0};
+  struct job_spec spec;
+  size_t size = 0;
+  if (!parse_arguments(argc, argv, &a)) {
+    fputs(usage, stderr);
+    return EXIT_INTERNAL;
+  }
+  struct sigaction action = {.sa_handler = on_terminate};
+  sigaction(SIGTERM, &action, NULL);
+  sigaction(SIGINT, &action, NULL);
+  openblas_set_num_threads(a.threads);
+  char *text = read_job(a.job, &size, &error);
+  if (!text || job_spec_read(text, size, &spec, &error) != STATUS_OK) {
+    free(text);
+    return report(&error);
+  }
+  free(text);
+  if (a.events && !(a.run.events = fopen(a.events, "a"))) {
+    error_set(&error, STATUS_IO, NULL, "cannot write %s: %s", a.events, strerror(errno));
+    return report(&error);
+  }
+  json_t *document = NULL;
+  enum status ending = STATUS_OK;
+  enum status status = run_job(&spec, &a.run, &document, &ending, &error);
+  if (a.run.events) {
+    fclose(a.run.events);
+  }
+  if (status != STATUS_OK) {
+    return report(&error);
+  }
+  if (document) {
+    print_document(document);
+  }
+  return ending == STATUS_OK          ? EXIT_SUCCEEDED
+         : ending == STATUS_CANCELLED ? EXIT_CANCELLED
+                                      : EXIT_STOPPED_EARLY;
+}

@@ -1,0 +1,225 @@
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/resource.h>
+#include "solver/post/fit.h"
+#include "solver/post/result_internal.h"
+
+static const double degree = M_PI / 180;
+
+struct result *result_create(const struct job_spec *spec, struct fe_model *model,
+                             const struct retraction *retraction) {
+  struct result *r = calloc(1, sizeof *r);
+  if (!r) {
+    return NULL;
+  }
+  *r = (struct result){.spec = spec, .model = model, .retraction = retraction, .onset = -1};
+  r->sample = calloc((size_t)spec->load.steps + 1, sizeof *r->sample);
+  r->midlines = json_array();
+  r->artifacts = json_array();
+  if (!r->sample || !r->midlines || !r->artifacts ||
+      state_create(model, &r->first) != STATUS_OK || state_create(model, &r->last) != STATUS_OK) {
+    result_destroy(r);
+    return NULL;
+  }
+  return r;
+}
+
+void result_destroy(struct result *r) {
+  if (!r) {
+    return;
+  }
+  free(r->sample);
+  json_decref(r->midlines);
+  json_decref(r->artifacts);
+  state_release(&r->first);
+  state_release(&r->last);
+  free(r);
+}
+
+/* Pressure at which the gap closed between the last open state and `pressure`: extrapolated
+ * from the two last open states, within that interval. */
+static double contact_onset(const struct result *r, double pressure) {
+  if (r->open_count == 0) {
+    return pressure;
+  }
+  const struct open_state *near = &r->open[0], *far = &r->open[1];
+  if (r->open_count < 2 || !(far->gap > near->gap) || !(near->pressure > far->pressure)) {
+    return 0.5 * (near->pressure + pressure);
+  }
+  double rate = (far->gap - near->gap) / (near->pressure - far->pressure);
+  return fmin(pressure, near->pressure + near->gap / rate);
+}
+
+static void follow_contact(struct result *r, const struct path_point *point,
+                           const struct contact_summary *contact) {
+  if (!isfinite(contact->min_gap) || r->onset >= 0) {
+    return;
+  }
+  if (contact->active > 0 || contact->min_gap <= 0) {
+    r->onset = contact_onset(r, point->pressure);
+    return;
+  }
+  r->open[1] = r->open[0];
+  r->open[0] = (struct open_state){point->pressure, contact->min_gap};
+  r->open_count += r->open_count < 2;
+}
+
+static json_t *midline(const struct result *r, const double *u, double pressure) {
+  const struct mesh *mesh = r->model->mesh;
+  double *x = malloc(sizeof *x * 3 * (size_t)mesh->section_count);
+  json_t *points = json_array();
+  if (x) {
+    shape_midline(mesh, u, x);
+    for (int s = 0; s < mesh->section_count; s++) {
+      json_array_append_new(points, json_pack("[fff]", 1e3 * x[3 * s], 1e3 * x[3 * s + 1],
+                                              1e3 * x[3 * s + 2]));
+    }
+  }
+  free(x);
+  return json_pack("{s:f, s:o}", "pressure_kPa", 1e-3 * pressure, "points_mm", points);
+}
+
+enum status result_add(struct result *r, const struct path_point *point) {
+  struct fe_model *m = r->model;
+  const struct fe_state *state = point->state;
+  model_update_gaps(m, state);
+  struct contact_summary contact = contact_summarise(&m->contact);
+  follow_contact(r, point, &contact);
+  if (!point->recorded || r->sample_count > (size_t)r->spec->load.steps) {
+    return STATUS_OK;
+  }
+  struct sample *s = &r->sample[r->sample_count];
+  *s = (struct sample){.pressure = point->pressure,
+                       .min_gap = contact.min_gap,
+                       .iterations = point->iterations};
+  shape_measure(m->mesh, r->retraction, state->u, &s->shape);
+  s->cavity_volume = model_volume(m, state, NULL) * (m->mesh->half ? 2 : 1);
+  s->max_stretch = shape_stretch(m, state->u, NULL);
+  if (s->max_stretch < 0) {
+    return STATUS_NO_MEMORY;
+  }
+  r->penetration = fmax(r->penetration, -contact.min_gap);
+  if (r->sample_count == 0) {
+    state_copy(m, &r->first, state);
+  }
+  state_copy(m, &r->last, state);
+  r->sample_count++;
+  return json_array_append_new(r->midlines, midline(r, state->u, point->pressure)) == 0
+             ? STATUS_OK
+             : STATUS_NO_MEMORY;
+}
+
+static void set_real(json_t *object, const char *key, double value) {
+  if (isfinite(value)) {
+    json_object_set_new(object, key, json_real(value));
+  }
+}
+
+static json_t *sample_object(const struct sample *s) {
+  json_t *o = json_object();
+  set_real(o, "pressure_kPa", 1e-3 * s->pressure);
+  set_real(o, "bending_angle_deg", s->shape.bending_angle / degree);
+  set_real(o, "chord_angle_deg", s->shape.chord_angle / degree);
+  set_real(o, "end_face_angle_deg", s->shape.end_face_angle / degree);
+  set_real(o, "tip_x_mm", 1e3 * s->shape.tip[0]);
+  set_real(o, "tip_y_mm", 1e3 * s->shape.tip[1]);
+  set_real(o, "tip_z_mm", 1e3 * s->shape.tip[2]);
+  set_real(o, "cavity_volume_mm3", 1e9 * s->cavity_volume);
+  set_real(o, "min_gap_mm", 1e3 * s->min_gap);
+  set_real(o, "max_stretch", s->max_stretch);
+  json_object_set_new(o, "newton_iterations", json_integer(s->iterations));
+  return o;
+}
+
+/* Fit of the bending angle (deg) against the pressure (kPa). */
+static bool fit_angle(const struct result *r, double from, double to, struct line_fit *fit) {
+  double *x = malloc(sizeof *x * (r->sample_count + 1));
+  double *y = malloc(sizeof *y * (r->sample_count + 1));
+  bool good = x && y;
+  for (size_t i = 0; good && i < r->sample_count; i++) {
+    x[i] = 1e-3 * r->sample[i].pressure;
+    y[i] = r->sample[i].shape.bending_angle / degree;
+  }
+  good = good && line_fit(x, y, r->sample_count, 1e-3 * from, 1e-3 * to, fit);
+  free(x);
+  free(y);
+  return good;
+}
+
+static json_t *metrics_object(const struct result *r) {
+  const struct metric_spec *m = &r->spec->metrics;
+  const struct mesh *mesh = r->model->mesh;
+  json_t *o = json_object();
+  double whole = mesh->half ? 2 : 1;
+  set_real(o, "mass_g", 1e3 * whole * r->model->reference_volume * r->spec->material.density_kg_m3);
+  if (r->sample_count == 0) {
+    return o;
+  }
+  const struct sample *s = &r->sample[r->sample_count - 1];
+  set_real(o, "bending_angle_deg", s->shape.bending_angle / degree);
+  set_real(o, "chord_angle_deg", s->shape.chord_angle / degree);
+  set_real(o, "end_face_angle_deg", s->shape.end_face_angle / degree);
+  struct line_fit fit;
+  if (fit_angle(r, m->fit_from, m->fit_to, &fit)) {
+    set_real(o, "sensitivity_deg_per_kPa", fit.slope);
+    set_real(o, "intercept_deg", fit.intercept);
+    set_real(o, "r_squared", fit.r_squared);
+  }
+  if (fit_angle(r, m->cai_from, m->cai_to, &fit)) {
+    set_real(o, "cai_rad_per_m_kPa", fit.slope * degree / r->spec->pneunet.length);
+  }
+  /* Downwards is the direction of bending. */
+  double rest = mesh->x[3 * mesh->centreline[mesh->section_count - 1] + 2];
+  set_real(o, "tip_deflection_mm", 1e3 * (rest - s->shape.tip[2]));
+  if (r->onset >= 0) {
+    set_real(o, "contact_onset_kPa", 1e-3 * r->onset);
+  }
+  set_real(o, "cavity_volume_mm3", 1e9 * s->cavity_volume);
+  set_real(o, "max_stretch", s->max_stretch);
+  set_real(o, "min_gap_mm", 1e3 * s->min_gap);
+  set_real(o, "max_penetration_mm", 1e3 * r->penetration);
+  return o;
+}
+
+static json_t *fit_object(const struct result *r) {
+  const struct metric_spec *m = &r->spec->metrics;
+  struct line_fit fit;
+  if (!fit_angle(r, m->fit_from, m->fit_to, &fit)) {
+    return json_null();
+  }
+  return json_pack("{s:f, s:f, s:f, s:f, s:f}", "from_kPa", 1e-3 * m->fit_from, "to_kPa",
+                   1e-3 * m->fit_to, "slope_deg_per_kPa", fit.slope, "intercept_deg",
+                   fit.intercept, "r_squared", fit.r_squared);
+}
+
+static json_t *statistics_object(const struct result *r, double wall_s, double cpu_s) {
+  const struct fe_statistics *s = &r->model->statistics;
+  struct rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  struct ldlt_statistics l = ldlt_statistics(r->model->ldlt);
+  return json_pack(
+      "{s:i, s:i, s:i, s:i, s:i, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "unknowns",
+      r->model->dof_count, "elements", r->model->mesh->element_count, "factorizations",
+      s->factorizations, "newton_iterations", s->newton_iterations, "solves", s->solves,
+      "gflop_per_factorization", 1e-9 * l.flops, "assembly_s", s->assembly_s, "residual_s",
+      s->residual_s, "factor_s", s->factor_s, "solve_s", s->solve_s, "contact_s", s->contact_s,
+      "wall_s", wall_s, "cpu_s", cpu_s, "peak_memory_MB", 1e-3 * 1.024 * (double)usage.ru_maxrss);
+}
+
+json_t *result_document(struct result *r, enum status status, const struct error *error,
+                        double wall_s, double cpu_s) {
+  bool good = status == STATUS_OK;
+  json_t *samples = json_array();
+  for (size_t i = 0; i < r->sample_count; i++) {
+    json_array_append_new(samples, sample_object(&r->sample[i]));
+  }
+  return json_pack("{s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:O, s:o, s:o, s:O, s:o, s:{s:s, s:s}}",
+                   "status", good ? "succeeded" : "diverged", "reason",
+                   good ? "" : status_word(status), "message", good ? "" : error->message, "kind",
+                   "response", "name", r->spec->name, "metrics", metrics_object(r), "samples",
+                   samples, "midlines", r->midlines, "fit", fit_object(r), "warnings",
+                   result_warnings(r), "artifacts", r->artifacts, "statistics",
+                   statistics_object(r, wall_s, cpu_s), "provenance", "version", PNEULAB_VERSION,
+                   "spec_hash", r->spec->hash);
+}

@@ -1,0 +1,31 @@
+/* The result document of a `response` job, gathered while the load path is followed. */
+#ifndef PNEULAB_POST_RESULT_H
+#define PNEULAB_POST_RESULT_H
+
+#include <jansson.h>
+#include "solver/fe/path.h"
+#include "solver/job/spec.h"
+
+struct result;
+
+/* spec, model and retraction must outlive the result, which the caller owns. NULL when memory
+ * runs out. */
+struct result *result_create(const struct job_spec *spec, struct fe_model *model,
+                             const struct retraction *retraction);
+void result_destroy(struct result *result);
+
+/* Takes in one converged state: recorded ones become samples and midlines, all of them serve to
+ * find the onset of contact. STATUS_OK or STATUS_NO_MEMORY. */
+enum status result_add(struct result *result, const struct path_point *point);
+
+/* Writes surface.json and surface.vtu of the first and the last recorded state into `directory`
+ * and lists them as artifacts. */
+enum status result_write_fields(struct result *result, const char *directory,
+                                struct error *error);
+
+/* The document, a new reference; `status` and `error` tell how the path ended. wall_s and cpu_s
+ * are those of the whole run. NULL when memory runs out. */
+json_t *result_document(struct result *result, enum status status, const struct error *error,
+                        double wall_s, double cpu_s);
+
+#endif

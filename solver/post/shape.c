@@ -1,0 +1,98 @@
+#include "solver/post/shape.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Angle of a direction in the x-z plane, positive towards -z. */
+static double direction(const double a[3], const double b[3]) {
+  return atan2(a[2] - b[2], b[0] - a[0]);
+}
+
+/* The value of `angle` plus whole turns that lies nearest to `near`. */
+static double unwrap(double angle, double near) {
+  return angle + 2 * M_PI * round((near - angle) / (2 * M_PI));
+}
+
+static void place(const struct mesh *mesh, const double *u, int section, double x[3]) {
+  int node = mesh->centreline[section];
+  for (int i = 0; i < 3; i++) {
+    x[i] = mesh->x[3 * node + i] + (u ? u[3 * node + i] : 0);
+  }
+}
+
+/* Bending and chord angle of a configuration, accumulated from station to station. */
+static void centreline_angles(const struct mesh *mesh, const double *u, double *bending,
+                              double *chord) {
+  double base[3], previous[3];
+  place(mesh, u, mesh->station[0], base);
+  place(mesh, u, mesh->station[0], previous);
+  *bending = *chord = 0;
+  for (int s = 1; s < mesh->station_count; s++) {
+    double x[3];
+    place(mesh, u, mesh->station[s], x);
+    *bending = unwrap(direction(previous, x), *bending);
+    *chord = unwrap(direction(base, x), *chord);
+    for (int i = 0; i < 3; i++) {
+      previous[i] = x[i];
+    }
+  }
+}
+
+void shape_measure(const struct mesh *mesh, const struct retraction *retraction, const double *u,
+                   struct shape *shape) {
+  double bending, chord, rotation[9], centre[3];
+  centreline_angles(mesh, NULL, &bending, &chord);
+  centreline_angles(mesh, u, &shape->bending_angle, &shape->chord_angle);
+  shape->bending_angle -= bending;
+  shape->chord_angle -= chord;
+  retraction_frame(retraction, u, mesh->section_count - 1, rotation, centre);
+  /* The frame's x axis is the first column. */
+  shape->end_face_angle = unwrap(atan2(-rotation[6], rotation[0]), shape->bending_angle);
+  place(mesh, u, mesh->section_count - 1, shape->tip);
+}
+
+void shape_midline(const struct mesh *mesh, const double *u, double *out) {
+  for (int s = 0; s < mesh->section_count; s++) {
+    place(mesh, u, s, out + 3 * s);
+  }
+}
+
+static double largest_stretch(const double f[9]) {
+  double c[9], value[3], v[9];
+  for (int i = 0; i < 9; i++) {
+    c[i] = f[i / 3] * f[i % 3] + f[3 + i / 3] * f[3 + i % 3] + f[6 + i / 3] * f[6 + i % 3];
+  }
+  symmetric3_eigen(c, value, v);
+  return sqrt(value[0]);
+}
+
+double shape_stretch(const struct fe_model *model, const double *u, double *node_stretch) {
+  const struct mesh *mesh = model->mesh;
+  double most = 0;
+  int *count = calloc((size_t)mesh->node_count, sizeof *count);
+  if (!count) {
+    return -1;
+  }
+  for (int n = 0; node_stretch && n < mesh->node_count; n++) {
+    node_stretch[n] = 0;
+  }
+  for (int e = 0; e < mesh->element_count; e++) {
+    double local[3][HEX27_STRIDE], f[9];
+    model_gather(model, u, e, local);
+    for (int q = 0; q < HEX27_POINTS; q++) {
+      element_gradient(&model->geometry[e], q, local, f);
+      double stretch = largest_stretch(f);
+      most = fmax(most, stretch);
+      if (node_stretch) { /* Gauss points are numbered like the nodes */
+        int node = mesh->element_nodes[HEX27_NODES * e + q];
+        node_stretch[node] += stretch;
+        count[node]++;
+      }
+    }
+  }
+  for (int n = 0; node_stretch && n < mesh->node_count; n++) {
+    node_stretch[n] /= count[n] > 0 ? count[n] : 1;
+  }
+  free(count);
+  return most;
+}

@@ -1,0 +1,23 @@
+/* Runs one checked job from mesh to result document. */
+#ifndef PNEULAB_RUN_H
+#define PNEULAB_RUN_H
+
+#include <jansson.h>
+#include <stdio.h>
+#include "solver/job/spec.h"
+
+struct run_options {
+  const char *out_dir;   /* directory for artifacts, NULL: none are written */
+  const char *deck_path; /* CalculiX deck to write instead of solving, NULL: solve */
+  FILE *events;          /* progress as JSON lines, NULL: none */
+  bool verbose;          /* iterations on standard error */
+  bool (*cancelled)(void *context);
+};
+
+/* Solves the job. On success *document is a new reference: a solve that stopped early also
+ * gives one, with the reason inside, and the status of its end in *ending. Other failures
+ * (geometry, memory, writing of files) leave *document NULL and fill *error. */
+enum status run_job(const struct job_spec *spec, const struct run_options *options,
+                    json_t **document, enum status *ending, struct error *error);
+
+#endif
