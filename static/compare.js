@@ -11,16 +11,15 @@ function tableOf(jobs) {
   const head = make('tr', {}, make('th', { scope: 'col' }, 'Metric'),
     make('th', { scope: 'col' }, 'Unit'),
     ...jobs.map((job) => make('th', { scope: 'col', class: 'number' },
-      make('a', { href: `/jobs/${job.id}` }, `Job ${job.id}`))));
+      make('a', { href: `/jobs/${job.id}` }, `Job ${job.id}`),
+      make('span', { class: 'job-name clamp', title: job.name }, job.name || '–'))));
   const rows = keys.map((key) => {
     const { label, unit } = quantity(key);
     return make('tr', {}, make('th', { scope: 'row' }, label),
       make('td', { class: 'unit' }, unit),
       ...jobs.map((job) => make('td', { class: 'number' }, number((job.metrics || {})[key]))));
   });
-  const names = make('tr', {}, make('th', { scope: 'row' }, 'Name'), make('td'),
-    ...jobs.map((job) => make('td', { class: 'number' }, job.name || '–')));
-  return [make('thead', {}, head), make('tbody', {}, names, ...rows)];
+  return [make('thead', {}, head), make('tbody', {}, ...rows)];
 }
 
 // Shows the comparison of the jobs with these ids; hides it when there are fewer than two.

@@ -44,19 +44,26 @@ export function quantity(key) {
     : { label: sentence(key), unit: '' };
 }
 
+// Narrow spaces between thousands, from five digits on.
+function grouped(text) {
+  const [whole, rest] = text.split('.');
+  const spaced = whole.length > 4 ? whole.replace(/\B(?=(\d{3})+$)/g, '\u202f') : whole;
+  return rest === undefined ? spaced : `${spaced}.${rest}`;
+}
+
 // Four significant digits; whole numbers in full.
 export function number(value) {
   if (typeof value !== 'number' || !Number.isFinite(value)) {
     return '–';
   }
   if (Number.isInteger(value) && Math.abs(value) < 1e12) {
-    return value.toLocaleString('en-US').replaceAll(',', '\u202f').replace('-', '−');
+    return (value < 0 ? '−' : '') + grouped(String(Math.abs(value)));
   }
   const size = Math.abs(value);
-  const text = size >= 1e6 || size < 1e-4
-    ? value.toExponential(3)
-    : value.toFixed(Math.max(0, 3 - Math.floor(Math.log10(size))));
-  return text.replaceAll('-', '−');
+  const text = size >= 1e7 || size < 1e-4
+    ? size.toExponential(3).replace('-', '−')
+    : grouped(size.toFixed(Math.max(0, 3 - Math.floor(Math.log10(size)))));
+  return (value < 0 ? '−' : '') + text;
 }
 
 export function withUnit(key, value) {

@@ -119,7 +119,7 @@ function showPlots(links) {
     const caption = CAPTIONS[name] || name;
     const image = make('img', { src: url, alt: caption, width: 800, height: 600 });
     const figure = make('figure', { class: 'plot', 'data-plot': name },
-      make('a', { href: url }, image), make('figcaption', {}, caption));
+      make('a', { href: url, title: 'Open in full size' }, image));
     // a plot that cannot be drawn, for want of a file, leaves no broken picture
     image.addEventListener('error', () => figure.remove());
     return figure;

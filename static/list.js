@@ -13,12 +13,14 @@ function makeRow(job, isSelected, onSelect) {
   const box = make('input', { type: 'checkbox', 'aria-label': `Compare job ${job.id}` });
   box.checked = isSelected;
   box.addEventListener('change', () => onSelect(job.id, box.checked));
-  const link = make('a', { href: `/jobs/${job.id}` }, job.name || `job ${job.id}`);
+  const name = job.name || `job ${job.id}`;
+  const link = make('a', { href: `/jobs/${job.id}`, class: 'clamp', title: name }, name);
   const labels = labelText(job.labels);
   const state = make('span');
   const why = make('span', { class: 'why' });
   const progress = make('progress', { max: 1, 'aria-label': `Progress of job ${job.id}` });
-  const angle = make('td', { class: 'number' });
+  const angle = make('td', { class: 'number wide' });
+  const narrowAngle = make('span', { class: 'narrow' });
   const created = make('time', {
     datetime: instant(job.created)?.toISOString(), title: moment(job.created),
   });
@@ -27,10 +29,10 @@ function makeRow(job, isSelected, onSelect) {
     make('td', { class: 'number' }, String(job.id)),
     make('td', { class: 'name' }, link, labels ? make('span', { class: 'labels' }, labels) : null),
     make('td', { class: 'wide' }, job.kind || '–'),
-    make('td', {}, state, why, progress),
+    make('td', {}, state, why, narrowAngle, progress),
     angle,
     make('td', { class: 'wide' }, created));
-  return { element, box, state, why, progress, angle, created };
+  return { element, box, state, why, progress, angle, narrowAngle, created };
 }
 
 function updateRow(row, job) {
@@ -41,7 +43,10 @@ function updateRow(row, job) {
   row.progress.hidden = job.state !== 'running' && job.state !== 'starting';
   row.progress.value = Math.min(Math.max(Number(job.progress) || 0, 0), 1);
   const angle = job.metrics?.bending_angle_deg;
-  setText(row.angle, typeof angle === 'number' ? `${number(angle)}°` : '–');
+  const text = typeof angle === 'number' ? `${number(angle)}°` : '';
+  setText(row.angle, text || '–');
+  setText(row.narrowAngle, text);
+  row.box.disabled = text === '' && !row.box.checked;
   setText(row.created, ago(job.created));
 }
 
