@@ -133,7 +133,9 @@ function showFiles(job) {
     files.push(['Result (JSON)', links.result || jobUrl(id, '/result')],
       ['Samples (CSV)', links.samples || jobUrl(id, '/samples.csv')]);
   }
-  files.push(['Log', links.log || jobUrl(id, '/log')]);
+  if (job.started) {
+    files.push(['Log', links.log || jobUrl(id, '/log')]);
+  }
   for (const link of links.artifacts || []) {
     const url = address(link, 'artifacts');
     files.push([fileName(url), url]);

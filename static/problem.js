@@ -2,6 +2,10 @@
 
 import { make } from './dom.js';
 
+function capital(text) {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
 function excerpt(text, line, column) {
   const source = text.split('\n')[line - 1];
   if (source === undefined) {
@@ -19,8 +23,8 @@ function excerpt(text, line, column) {
 export function problemView(problem, text = '') {
   const { title, detail, pointer, line, column } = problem.body || {};
   const view = make('div', { class: 'problem' },
-    make('p', {}, make('strong', {}, title || 'That did not work')),
-    make('p', {}, detail || problem.message));
+    make('p', {}, make('strong', {}, capital(title || 'that did not work'))),
+    make('p', {}, capital(detail || problem.message)));
   const places = [];
   if (pointer) {
     places.push(make('dt', {}, 'Where'), make('dd', {}, make('code', { class: 'pointer' }, pointer)));
