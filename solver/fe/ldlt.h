@@ -2,7 +2,7 @@
  * is a sum of dense cliques (element and contact matrices); S is a diagonal of signs, so that
  * the inertia is known. No pivoting: the tangent of an elastic body is definite or close to it.
  *
- * The ordering (AMD) and the supernodal elimination tree come from SuiteSparse, on the graph of
+ * The ordering (AMD or METIS) and the supernodal elimination tree come from SuiteSparse, on the graph of
  * nodes; the method is that of Duff and Reid (1983). */
 #ifndef PNEULAB_FE_LDLT_H
 #define PNEULAB_FE_LDLT_H

@@ -108,8 +108,11 @@ done:
 static enum status order_nodes(struct analysis *a) {
   cholmod_common *c = &a->common;
   c->print = 0;
-  c->nmethods = 1;
+  /* Minimum degree wins on thin-walled bodies, nested dissection on larger and touching ones:
+   * both are tried, the one with the smaller factor is kept. */
+  c->nmethods = 2;
   c->method[0].ordering = CHOLMOD_AMD;
+  c->method[1].ordering = CHOLMOD_METIS;
   c->supernodal = CHOLMOD_SUPERNODAL;
   c->postorder = 1;
   /* A node carries three unknowns, so the limits for merging small supernodes are smaller than

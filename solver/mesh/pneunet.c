@@ -85,6 +85,24 @@ struct tier {
   int gap_wall, side_wall, top;
 };
 
+static bool any_detached(const struct pneunet_spec *p) {
+  bool detached = false;
+  for (int r = 0; r < p->run_count; r++) {
+    detached = detached || p->runs[r].config == CHAMBER_C;
+  }
+  return detached;
+}
+
+/* |y| where the stretch of the lateral axis between channel or stem and side wall begins. */
+static double inner_start(const struct pneunet_spec *p) {
+  return any_detached(p) ? p->stem : p->has_channel ? 0.5 * p->channel_width : 0;
+}
+
+/* z where the stretch of the vertical axis below the top wall begins. */
+static double cavity_floor(const struct pneunet_spec *p) {
+  return p->bottom_layer + (any_detached(p) ? p->slit + p->slit_floor : 0);
+}
+
 struct mesh_spec pneunet_resolution(const struct job_spec *spec) {
   static const struct tier tiers[] = {
       [ACCURACY_FAST] = {0.35, 0.70, 0.45, 0.33, 2, 1, 1},
@@ -105,9 +123,9 @@ struct mesh_spec pneunet_resolution(const struct job_spec *spec) {
   CHOOSE(top, tier->top)
   CHOOSE(gap, 1)
   CHOOSE(cavity, CELLS(p->cavity_length, tier->cavity))
-  CHOOSE(half_width, CELLS(0.5 * p->width - p->side_wall, tier->half_width))
+  CHOOSE(half_width, CELLS(0.5 * p->width - p->side_wall - inner_start(p), tier->half_width))
   CHOOSE(bottom, CELLS(p->bottom_layer, tier->bottom))
-  CHOOSE(height, CELLS(h - p->top_wall - p->bottom_layer, tier->height))
+  CHOOSE(height, CELLS(h - p->top_wall - cavity_floor(p), tier->height))
 #undef CELLS
 #undef CHOOSE
   return chosen;
@@ -263,10 +281,7 @@ enum status pneunet_mesh(const struct job_spec *spec, struct mesh *mesh, struct 
   struct mesh_spec n = pneunet_resolution(spec);
   struct grid grid = {0};
   int station[CHAMBERS_MAX + 1], core = 0;
-  bool detached = false;
-  for (int r = 0; r < p->run_count; r++) {
-    detached = detached || p->runs[r].config == CHAMBER_C;
-  }
+  bool detached = any_detached(p);
   enum status status = axial_lines(p, &n, &grid.axis[0], station);
   if (status == STATUS_OK) {
     status = lateral_lines(p, &n, spec->half_model, detached, &grid.axis[1]);
