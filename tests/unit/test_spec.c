@@ -347,22 +347,51 @@ END_TEST
 
 /* ---- files and threads ------------------------------------------------------------------ */
 
+/* Reads a file below the source directory into static storage, with a NUL behind it. */
+static const char *read_source_file(const char *name, size_t *size) {
+  static char text[1 << 16];
+  const char *source = getenv("srcdir");
+  char path[600];
+  snprintf(path, sizeof path, "%s/%s", source ? source : ".", name);
+  FILE *file = fopen(path, "rb");
+  ck_assert_msg(file != NULL, "%s cannot be opened", path);
+  *size = fread(text, 1, sizeof text - 1, file);
+  fclose(file);
+  text[*size] = '\0';
+  return text;
+}
+
+START_TEST(the_documents_of_the_manual_are_valid) {
+  size_t size = 0;
+  int documents = 0;
+  const char *at = read_source_file("docs/JOBS.md", &size);
+  while ((at = strstr(at, "```json\n")) != NULL) {
+    at += strlen("```json\n");
+    const char *end = strstr(at, "```");
+    ck_assert_ptr_nonnull(end);
+    struct job_spec spec;
+    struct error error;
+    ck_assert_msg(job_spec_read(at, (size_t)(end - at), &spec, &error) == STATUS_OK, "%s: %s",
+                  error.pointer, error.message);
+    at = end + 3;
+    documents++;
+  }
+  ck_assert_int_eq(documents, 2);
+}
+END_TEST
+
 START_TEST(every_job_file_of_the_project_is_valid) {
   static const char *const files[] = {
       "multicurvature/baseline",   "multicurvature/gap-1mm",
       "multicurvature/gap-2mm",    "multicurvature/gap-3mm",
       "prototype/twelve-chambers", "prototype/twelve-chambers-no-contact"};
-  const char *source = getenv("srcdir");
-  char path[600];
-  snprintf(path, sizeof path, "%s/jobs/%s.json", source ? source : ".", files[_i]);
-  FILE *file = fopen(path, "rb");
-  ck_assert_msg(file != NULL, "%s cannot be opened", path);
-  static char text[1 << 16];
-  size_t size = fread(text, 1, sizeof text, file);
-  fclose(file);
+  char name[100];
+  snprintf(name, sizeof name, "jobs/%s.json", files[_i]);
+  size_t size = 0;
+  const char *text = read_source_file(name, &size);
   struct job_spec spec;
   struct error error;
-  ck_assert_msg(job_spec_read(text, size, &spec, &error) == STATUS_OK, "%s: %s: %s", path,
+  ck_assert_msg(job_spec_read(text, size, &spec, &error) == STATUS_OK, "%s: %s: %s", name,
                 error.pointer, error.message);
   check_near(spec.pneunet.length, 0.118);
   ck_assert_int_eq(spec.pneunet.chamber_count, 12);
@@ -414,6 +443,7 @@ int main(void) {
   tcase_add_loop_test(tcase, refuses, 0, sizeof refusals / sizeof *refusals);
   tcase_add_test(tcase, errors_have_a_place_in_the_text);
   tcase_add_test(tcase, text_that_is_no_job);
+  tcase_add_test(tcase, the_documents_of_the_manual_are_valid);
   tcase_add_loop_test(tcase, every_job_file_of_the_project_is_valid, 0, 6);
   tcase_add_test(tcase, one_reader_serves_several_threads);
   suite_add_tcase(suite, tcase);
