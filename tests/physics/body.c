@@ -26,15 +26,13 @@ static int join_node(struct mesh *mesh, const double x[3], int limit) {
   return mesh->node_count++;
 }
 
-static void add_faces(const struct body *body, int element, const int cell[3],
-                      struct mesh *mesh) {
+static void add_faces(const struct body *body, int element, const int cell[3], struct mesh *mesh) {
   for (int axis = 0; axis < 3; axis++) {
     for (int side = -1; side <= 1; side += 2) {
       if (cell[axis] == (side < 0 ? 0 : body->cells[axis] - 1)) {
         bool cavity = body->cavity && axis == 0 && side < 0;
-        mesh->faces[mesh->face_count++] =
-            (struct mesh_face){element, (signed char)axis, (signed char)side,
-                               cavity ? FACE_CAVITY : FACE_OUTER};
+        mesh->faces[mesh->face_count++] = (struct mesh_face){
+            element, (signed char)axis, (signed char)side, cavity ? FACE_CAVITY : FACE_OUTER};
       }
     }
   }
@@ -84,7 +82,7 @@ void body_build(const struct body *body, struct mesh *mesh) {
 void body_hold(struct mesh *mesh, int axis, double at, int components) {
   for (int n = 0; n < mesh->node_count; n++) {
     const double *x = mesh->x + 3 * n;
-    if (axis < 0 || fabs(x[axis] - at) < 1e-9 * (1 + fabs(at))) {
+    if (axis < 0 || fabs(x[axis] - at) < 1e-9 * (1e-3 + fabs(at))) {
       for (int i = 0; i < 3; i++) {
         mesh->fixed[3 * n + i] |= (components >> i) & 1;
       }
@@ -103,15 +101,25 @@ void body_mark_boundary(const struct mesh *mesh, unsigned char *on_boundary) {
   }
 }
 
-void body_add_traction(struct fe_model *model, int axis, int side, const double traction[3]) {
+static bool face_lies_at(const struct mesh *mesh, const int nodes[QUAD9_NODES], int axis,
+                         double at) {
+  for (int m = 0; m < QUAD9_NODES; m++) {
+    if (fabs(mesh->x[3 * nodes[m] + axis] - at) > 1e-9 * (1e-3 + fabs(at))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void body_add_traction(struct fe_model *model, int axis, double at, const double traction[3]) {
   const struct mesh *mesh = model->mesh;
   const struct quad9_tables *t = &model->quad9;
   for (int f = 0; f < mesh->face_count; f++) {
     int nodes[QUAD9_NODES];
-    if (mesh->faces[f].axis != axis || mesh->faces[f].side != side) {
+    mesh_face_nodes(mesh, &mesh->faces[f], nodes);
+    if (!face_lies_at(mesh, nodes, axis, at)) {
       continue;
     }
-    mesh_face_nodes(mesh, &mesh->faces[f], nodes);
     for (int q = 0; q < QUAD9_POINTS; q++) {
       double a[3] = {0}, b[3] = {0}, normal[3];
       for (int m = 0; m < QUAD9_NODES; m++) {

@@ -23,11 +23,12 @@ void body_build(const struct body *body, struct mesh *mesh);
 /* Holds the components of the nodes whose coordinate `axis` is `at`; axis -1 means all nodes. */
 void body_hold(struct mesh *mesh, int axis, double at, int components);
 
-/* True for a node on the boundary box of the nodes' numbers: on a face of some block. */
+/* on_boundary[n] = 1 for nodes on a face of some block, else 0. */
 void body_mark_boundary(const struct mesh *mesh, unsigned char *on_boundary);
 
-/* Adds a dead traction (Pa) on the boundary faces of one axis and side to the dead load. */
-void body_add_traction(struct fe_model *model, int axis, int side, const double traction[3]);
+/* Adds a dead traction (Pa) to the dead load, on the boundary faces whose nodes all have the
+ * coordinate x[axis] = at. */
+void body_add_traction(struct fe_model *model, int axis, double at, const double traction[3]);
 
 /* Model of a body without contact; fails the test when it cannot be made. */
 struct fe_model *body_model(const struct mesh *mesh, const struct material_spec *material);

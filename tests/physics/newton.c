@@ -56,8 +56,8 @@ static double dot(int n, const double *a, const double *b) {
   return sum;
 }
 
-enum status newton_inflate(struct fe_model *m, double volume, double scale,
-                           struct fe_state *state, double *pressure, double tolerance) {
+enum status newton_inflate(struct fe_model *m, double volume, double scale, struct fe_state *state,
+                           double *pressure, double tolerance) {
   int n = m->dof_count;
   double *gradient = malloc(sizeof *gradient * 3 * (size_t)n);
   ck_assert_ptr_nonnull(gradient);

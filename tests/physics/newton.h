@@ -13,8 +13,8 @@ struct newton_log {
 
 /* Solves for equilibrium under `load` until the largest correction is below `tolerance` (m).
  * Returns STATUS_OK, INVERTED or DIVERGED. log may be NULL. */
-enum status newton_solve(struct fe_model *model, const struct fe_load *load,
-                         struct fe_state *state, double tolerance, struct newton_log *log);
+enum status newton_solve(struct fe_model *model, const struct fe_load *load, struct fe_state *state,
+                         double tolerance, struct newton_log *log);
 
 /* Solves for the pressure at which the cavity encloses `volume`, so that a limit point of the
  * pressure is no obstacle. scale * model_volume() is the volume whose gradient is exact. */

@@ -22,8 +22,8 @@ double report_order(double coarse_error, double fine_error, double refinement) {
   return log(fabs(coarse_error / fine_error)) / log(refinement);
 }
 
-void report_second_order(const char *what, double (*error)(void *context, double h),
-                         void *context, double first, int halvings, double floor) {
+void report_second_order(const char *what, double (*error)(void *context, double h), void *context,
+                         double first, int halvings, double floor) {
   double previous = error(context, first), smallest = previous, ratio = 0;
   int seen = 0;
   for (int k = 1; k <= 14; k++) {

@@ -17,7 +17,7 @@ double report_order(double coarse_error, double fine_error, double refinement);
  * error(context, h) is the relative error of a central difference with step h; h runs over
  * first / 2^k. At least `halvings` halvings have to show the order 2 (ratio 3.5 to 4.5), and the
  * smallest error has to be below `floor`. */
-void report_second_order(const char *what, double (*error)(void *context, double h),
-                         void *context, double first, int halvings, double floor);
+void report_second_order(const char *what, double (*error)(void *context, double h), void *context,
+                         double first, int halvings, double floor);
 
 #endif

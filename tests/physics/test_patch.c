@@ -10,13 +10,27 @@
 #include "tests/unit/suite.h"
 
 static const struct material_spec materials[] = {
-    {.model = MATERIAL_NEO_HOOKE, .terms = 1, .c = {0.4e6}, .bulk_ratio = 1000, .name = "neo-Hooke"},
-    {.model = MATERIAL_YEOH, .terms = 3, .c = {0.25e6, -0.05e6, 0.005e6}, .bulk_ratio = 1000,
+    {.model = MATERIAL_NEO_HOOKE,
+     .terms = 1,
+     .c = {0.4e6},
+     .bulk_ratio = 1000,
+     .name = "neo-Hooke"},
+    {.model = MATERIAL_YEOH,
+     .terms = 3,
+     .c = {0.25e6, -0.05e6, 0.005e6},
+     .bulk_ratio = 1000,
      .name = "Yeoh"},
-    {.model = MATERIAL_MOONEY_RIVLIN, .terms = 2, .c = {0.293e6, 0.177e6}, .bulk_ratio = 1000,
+    {.model = MATERIAL_MOONEY_RIVLIN,
+     .terms = 2,
+     .c = {0.293e6, 0.177e6},
+     .bulk_ratio = 1000,
      .name = "Mooney-Rivlin"},
-    {.model = MATERIAL_OGDEN, .terms = 3, .c = {0.63e6, 0.0012e6, -0.01e6}, .alpha = {1.3, 5, -2},
-     .bulk_ratio = 1000, .name = "Ogden"},
+    {.model = MATERIAL_OGDEN,
+     .terms = 3,
+     .c = {0.63e6, 0.0012e6, -0.01e6},
+     .alpha = {1.3, 5, -2},
+     .bulk_ratio = 1000,
+     .name = "Ogden"},
 };
 enum { MATERIALS = sizeof materials / sizeof *materials };
 
@@ -166,7 +180,7 @@ int main(void) {
   Suite *suite = suite_create("patch test");
   TCase *patch = tcase_create("patch");
   tcase_set_timeout(patch, 60);
-  tcase_add_loop_test(patch, homogeneous_deformation_is_reproduced, 0, MATERIALS *DEFORMATIONS);
+  tcase_add_loop_test(patch, homogeneous_deformation_is_reproduced, 0, MATERIALS * DEFORMATIONS);
   tcase_add_loop_test(patch, rigid_motion_leaves_no_residual, 0, MATERIALS);
   suite_add_tcase(suite, patch);
   return suite_run(suite);
