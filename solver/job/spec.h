@@ -101,7 +101,8 @@ struct job_spec {
   bool half_model; /* symmetric about y = 0 in geometry and load */
   enum accuracy accuracy;
   double timeout_s; /* 0: none */
-  char hash[65];    /* SHA-256 of the canonical job text (sorted keys, name and labels left out) */
+  char hash[65];    /* SHA-256 of the canonical job text: sorted keys, defaults filled in, no
+                     * name, labels and comments; 64 hexadecimal digits */
 };
 
 /* What every reading of a job needs: unit database and schema. One reader may be used by several
