@@ -21,7 +21,6 @@ struct connections {
   pthread_mutex_t mutex;
   int64_t timeout_ms;
   struct connection *first;
-  unsigned count;
 };
 
 enum status connections_create(int64_t timeout_ms, struct connections **connections,
@@ -60,7 +59,6 @@ struct connection *connections_add(struct connections *connections, int socket) 
     made->next->previous = made;
   }
   connections->first = made;
-  connections->count++;
   pthread_mutex_unlock(&connections->mutex);
   return made;
 }
@@ -78,7 +76,6 @@ void connections_remove(struct connections *connections, struct connection *conn
   if (connection->next) {
     connection->next->previous = connection->previous;
   }
-  connections->count--;
   pthread_mutex_unlock(&connections->mutex);
   free(connection);
 }
@@ -112,9 +109,12 @@ void connections_expire(struct connections *connections) {
   pthread_mutex_unlock(&connections->mutex);
 }
 
-unsigned connections_count(struct connections *connections) {
+unsigned connections_busy(struct connections *connections) {
+  unsigned busy = 0;
   pthread_mutex_lock(&connections->mutex);
-  unsigned count = connections->count;
+  for (const struct connection *at = connections->first; at; at = at->next) {
+    busy += at->phase != CONNECTION_HEADER;
+  }
   pthread_mutex_unlock(&connections->mutex);
-  return count;
+  return busy;
 }

@@ -30,7 +30,7 @@ void connections_phase(struct connections *connections, struct connection *conne
                        enum connection_phase phase);
 /* Shuts down the sockets whose time is over; a request that did not arrive gets a 408. */
 void connections_expire(struct connections *connections);
-/* Number of open connections. */
-unsigned connections_count(struct connections *connections);
+/* Number of connections with a request that is not answered yet. */
+unsigned connections_busy(struct connections *connections);
 
 #endif

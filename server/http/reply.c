@@ -39,9 +39,27 @@ static void reply_no_memory(struct reply *reply) {
   reply_static(reply, "application/problem+json", text, sizeof text - 1);
 }
 
+/* The value as indented text that ends in a newline; NULL without memory. */
+static char *json_text(const json_t *value) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = value ? open_memstream(&text, &size) : NULL;
+  if (!out) {
+    return NULL;
+  }
+  int failed = json_dumpf(value, out, JSON_INDENT(2) | JSON_REAL_PRECISION(15));
+  failed |= fputc('\n', out) == EOF;
+  failed |= fclose(out);
+  if (failed) {
+    free(text);
+    text = NULL;
+  }
+  return text;
+}
+
 static void reply_json_typed(struct reply *reply, unsigned status, const char *content_type,
                              json_t *value) {
-  char *text = value ? json_dumps(value, JSON_INDENT(2) | JSON_REAL_PRECISION(15)) : NULL;
+  char *text = json_text(value);
   json_decref(value);
   reply->status = status;
   reply_text(reply, content_type, text, text ? strlen(text) : 0);

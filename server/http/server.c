@@ -5,6 +5,7 @@
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "server/base/clock.h"
@@ -18,6 +19,8 @@ enum {
   CONNECTIONS_MAX = 500,
   IDLE_TIMEOUT_S = 15,
   TICK_MS = 200,
+  LAST_ANSWERS_MS = 1000,
+  TARGET_MAX = 65536, /* more than libmicrohttpd takes */
   /* Bodies over the limit are read to their end, so that the client sees the answer, unless they
    * are longer than this. */
   BODY_DISCARD_MAX = 16 << 20
@@ -39,6 +42,7 @@ struct exchange {
   struct reply reply; /* prepared before the body has been read, if status is not 0 */
   handler *handle;
   size_t body_room, received;
+  uintptr_t target_at; /* where libmicrohttpd keeps the target that request.target copies */
   enum { EXCHANGE_NEW, EXCHANGE_BODY, EXCHANGE_WAITING } phase;
   bool parsed;
 };
@@ -115,6 +119,13 @@ static struct connection *exchange_connection(const struct exchange *exchange) {
   return info ? info->socket_context : NULL;
 }
 
+/* Whether a NUL byte hides the rest of the target: then the version, which follows it in the same
+ * buffer, is further away than the target is long. */
+static bool target_is_cut(const struct exchange *exchange, const char *version) {
+  uintptr_t distance = (uintptr_t)version - exchange->target_at;
+  return distance < TARGET_MAX && distance != strlen(exchange->request.target) + 1;
+}
+
 /* Understands the header: fills exchange->handle, or prepares the reply that refuses it. */
 static void exchange_open(struct exchange *exchange, const char *method, const char *version) {
   struct request *request = &exchange->request;
@@ -127,7 +138,9 @@ static void exchange_open(struct exchange *exchange, const char *method, const c
   } else if (strcmp(method, "DELETE") == 0) {
     request->method = HTTP_DELETE;
   }
-  const char *problem = url_parse(request->target, &request->url);
+  const char *problem = target_is_cut(exchange, version)
+                            ? "The request target has a NUL byte."
+                            : url_parse(request->target, &request->url);
   if (problem) {
     reply_problem(reply, 400, "malformed_target", "%s", problem);
     reply->close = true;
@@ -256,6 +269,7 @@ static void *server_note_target(void *context, const char *target,
   struct exchange *exchange = calloc(1, sizeof *exchange);
   if (exchange) {
     reply_init(&exchange->reply);
+    exchange->target_at = (uintptr_t)target;
     exchange->request.target = strdup(target);
     if (!exchange->request.target) {
       free(exchange);
@@ -380,6 +394,15 @@ void server_stop_accepting(struct server *server) {
   }
 }
 
+/* Answers those who still wait for a job, and gives all open requests a moment to be answered. */
+static void server_answer_waiting(struct server *server) {
+  struct timespec pause = {.tv_nsec = 10000000};
+  waiters_expire(server->service->waiters, true);
+  for (int i = 0; i < LAST_ANSWERS_MS / 10 && connections_busy(server->connections) > 0; i++) {
+    nanosleep(&pause, NULL);
+  }
+}
+
 void server_destroy(struct server *server) {
   if (!server) {
     return;
@@ -391,8 +414,8 @@ void server_destroy(struct server *server) {
     pthread_mutex_unlock(&server->mutex);
     pthread_join(server->ticker, NULL);
   }
-  waiters_expire(server->service->waiters, true);
   if (server->daemon) {
+    server_answer_waiting(server);
     MHD_stop_daemon(server->daemon);
   }
   connections_destroy(server->connections);

@@ -1,0 +1,180 @@
+# Shared by the tests of the API: a real daemon on a free port with a data directory of its own,
+# and checks that count. Source it; it cleans up when the test ends.
+# Needs: bash, curl, jq, sqlite3. Binaries: $BIN (default: the current directory).
+set -u
+BIN=${BIN:-$PWD}
+SRC=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+WORK=$(mktemp -d)
+DATA=$WORK/data
+DAEMON_PID=
+FAILED=0
+PASSED=0
+
+for tool in curl jq sqlite3; do
+  command -v $tool > /dev/null || { echo "SKIP: $tool is not installed"; exit 77; }
+done
+
+# start_daemon OPTION...: sets DAEMON_PID, PORT and URL.
+start_daemon() {
+  "$BIN/pneulabd" --data "$DATA" --listen 127.0.0.1:0 "$@" > "$WORK/stdout" 2>> "$WORK/stderr" &
+  DAEMON_PID=$!
+  for _ in $(seq 200); do
+    if grep -q '^listening on http://' "$WORK/stdout"; then
+      URL=$(sed -n 's/^listening on //p' "$WORK/stdout")
+      PORT=${URL##*:}
+      return 0
+    fi
+    kill -0 "$DAEMON_PID" 2> /dev/null || break
+    sleep 0.05
+  done
+  echo "the daemon did not start:"; cat "$WORK/stderr"
+  exit 1
+}
+
+# stop_daemon [SIGNAL]: ends the daemon and leaves its exit status in STATUS.
+stop_daemon() {
+  kill "-${1:-TERM}" "$DAEMON_PID" 2> /dev/null
+  wait "$DAEMON_PID" 2> /dev/null
+  STATUS=$?
+  DAEMON_PID=
+}
+
+cleanup() {
+  if [ -n "$DAEMON_PID" ]; then
+    kill -KILL "$DAEMON_PID" 2> /dev/null
+    wait "$DAEMON_PID" 2> /dev/null
+  fi
+  if [ "$FAILED" -ne 0 ]; then
+    echo "the daemon's log:"; tail -40 "$WORK/stderr"
+  fi
+  rm -rf "$WORK"
+}
+trap cleanup EXIT
+
+# check WHAT EXPECTED ACTUAL: compares texts.
+check() {
+  if [ "$2" = "$3" ]; then
+    PASSED=$((PASSED + 1))
+  else
+    FAILED=$((FAILED + 1))
+    printf 'FAILED: %s\n  expected: %s\n  actual:   %s\n' "$1" "$2" "$3"
+  fi
+}
+
+# check_match WHAT PATTERN ACTUAL: an extended regular expression must be found.
+check_match() {
+  if printf '%s' "$3" | grep -Eq -- "$2"; then
+    PASSED=$((PASSED + 1))
+  else
+    FAILED=$((FAILED + 1))
+    printf 'FAILED: %s\n  expected a match of: %s\n  actual: %s\n' "$1" "$2" "$3"
+  fi
+}
+
+# To be called last.
+finish() {
+  if [ -n "$DAEMON_PID" ]; then
+    check "the daemon is alive at the end" '{"status":"ok"}' "$(curl -s "$URL/healthz" | jq -c .)"
+    stop_daemon TERM
+    check "the daemon ends with status 0" 0 "$STATUS"
+  fi
+  check "no sanitizer report" "" "$(grep -E 'ERROR: |WARNING: ThreadSan|runtime error' "$WORK/stderr")"
+  echo "$PASSED passed, $FAILED failed"
+  [ "$FAILED" -eq 0 ]
+  exit
+}
+
+# fetch METHOD PATH [CURL OPTION...]: the body into BODY, the status into CODE, headers into HEAD.
+fetch() {
+  local method=$1 path=$2
+  shift 2
+  CODE=$(curl -s --path-as-is --max-time 90 -X "$method" -o "$WORK/body" -D "$WORK/head" \
+    -w '%{http_code}' "$@" "$URL$path")
+  BODY=$(tr -d '\0' < "$WORK/body")
+  HEAD=$(tr -d '\r' < "$WORK/head")
+}
+
+# header NAME: its value in the last answer.
+header() {
+  printf '%s\n' "$HEAD" | sed -n "s/^$1: //Ip" | tail -1
+}
+
+# field FILTER: a part of the last body.
+field() {
+  printf '%s' "$BODY" | jq -c -r "$1" 2> /dev/null
+}
+
+# submit [DOCUMENT] [CURL OPTION...]: prints the id of a new job.
+submit() {
+  local document=${1:-$(job)}
+  shift
+  curl -s -X POST --data-binary "$document" "$@" "$URL/api/v1/jobs" | jq -r .id
+}
+
+# wait_state ID PATTERN [SECONDS]: waits until the job's state matches and prints it.
+wait_state() {
+  local state='' end=$((SECONDS + ${3:-20}))
+  while [ "$SECONDS" -le "$end" ]; do
+    state=$(curl -s "$URL/api/v1/jobs/$1" | jq -r .state)
+    if printf '%s' "$state" | grep -Eqx -- "$2"; then
+      break
+    fi
+    sleep 0.05
+  done
+  printf '%s' "$state"
+}
+
+# alive PID: whether a process exists and is more than a zombie.
+alive() {
+  local state
+  state=$(sed "s/.*) //; s/ .*//" "/proc/$1/stat" 2> /dev/null)
+  if [ -n "$state" ] && [ "$state" != Z ]; then echo yes; else echo no; fi
+}
+
+# sql STATEMENT: asks the database file itself.
+sql() {
+  sqlite3 -cmd '.timeout 5000' "$DATA/pneulab.db" "$1"
+}
+
+# job [JQ EDIT]: a valid job, perhaps changed: job '.name = "x"'.
+job() {
+  jq -c "${1:-.}" <<'END'
+{ "kind": "response", "name": "twelve chambers", "labels": { "suite": "api" },
+  "actuator": { "family": "pneunet", "length": "118 mm", "width": "30 mm", "height": "15.6 mm",
+    "chambers": [ { "config": "B", "count": 12 } ], "chamber_gap": "2 mm", "side_wall": "2 mm",
+    "top_wall": "1.5 mm", "bottom_layer": "6 mm", "channel": { "width": "4 mm", "height": "2 mm" } },
+  "material": "elastic-50a",
+  "load": { "pressure": { "to": "50 kPa", "steps": 2 } },
+  "contact": false, "accuracy": "fast", "timeout": "1 min" }
+END
+}
+
+# solver BODY: writes a stand-in for pneulab-solve that runs BODY (with $out, $events, $job set and
+# the functions progress and result at hand) and prints its path.
+solver() {
+  cat > "$WORK/solver" <<END
+#!/bin/bash
+while [ \$# -gt 1 ]; do
+  case \$1 in
+    --out) out=\$2; shift 2 ;;
+    --events) events=\$2; shift 2 ;;
+    --threads) shift 2 ;;
+  esac
+done
+job=\$1
+progress() { echo "{\"event\":\"progress\",\"fraction\":\$1,\"pressure_kPa\":\$2}" >> "\$events"; }
+result() {
+  echo '{"quads":[],"states":[]}' > "\$out/surface.json"
+  cat <<DOC
+{"status":"\$1","reason":"\$2","message":"\$3","kind":"response","name":"n",
+ "metrics":{"bending_angle_deg":64.25,"mass_g":3.5},
+ "samples":[{"pressure_kPa":0,"bending_angle_deg":0},{"pressure_kPa":50,"bending_angle_deg":64.25}],
+ "midlines":[],"warnings":[],"artifacts":["surface.json","../../escape","missing.vtu"],
+ "statistics":{},"provenance":{"version":"0.1.0","spec_hash":""}}
+DOC
+}
+$1
+END
+  chmod +x "$WORK/solver"
+  printf '%s' "$WORK/solver"
+}

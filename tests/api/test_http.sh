@@ -1,0 +1,99 @@
+#!/bin/bash
+# Requests that two parsers may read differently, cross-site requests, slow and many clients.
+. "$(dirname "$0")/lib.sh"
+RAW=${RAW:-$BIN/tests/api/raw_client}
+start_daemon --header-timeout 2 --solver "$(solver 'result succeeded')"
+
+# raw WHAT STATUS END REQUEST [DELAY [SILENCE]]: sends the bytes (printf escapes); END is closed or open.
+raw() {
+  local answer
+  answer=$(printf "$4" | "$RAW" "$PORT" "${5:-0}" "${6:-1000}" | tr -d '\r\0')
+  check "$1" "$2 [$3]" "$(sed -n '1s/^HTTP[^ ]* \([0-9]*\).*/\1/p' <<< "$answer") $(tail -1 <<< "$answer")"
+}
+H='Host: localhost\r\n'
+raw "a plain request" 200 open "GET /healthz HTTP/1.1\r\n$H\r\n"
+raw "length and coding" 400 closed "POST /api/v1/jobs HTTP/1.1\r\n${H}Content-Length: 3\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n"
+raw "coding and length" 400 closed "POST /api/v1/jobs HTTP/1.1\r\n${H}Transfer-Encoding: chunked\r\nContent-Length: 3\r\n\r\n0\r\n\r\n"
+raw "two lengths" 400 closed "POST /api/v1/jobs HTTP/1.1\r\n${H}Content-Length: 2\r\nContent-Length: 20\r\n\r\n{}"
+raw "two equal lengths" 400 closed "POST /api/v1/jobs HTTP/1.1\r\n${H}Content-Length: 2\r\nContent-Length: 2\r\n\r\n{}"
+raw "a list of lengths" 400 closed "POST /api/v1/jobs HTTP/1.1\r\n${H}Content-Length: 2, 2\r\n\r\n{}"
+raw "a signed length" 400 closed "POST /api/v1/jobs HTTP/1.1\r\n${H}Content-Length: +2\r\n\r\n{}"
+raw "a negative length" 400 closed "POST /api/v1/jobs HTTP/1.1\r\n${H}Content-Length: -1\r\n\r\n"
+raw "two hosts" 400 closed "GET /healthz HTTP/1.1\r\n$H$H\r\n"
+raw "no host" 400 closed "GET /healthz HTTP/1.1\r\n\r\n"
+raw "space before the colon" 400 closed "GET /healthz HTTP/1.1\r\n${H}Content-Length : 5\r\n\r\n"
+raw "unknown coding" 501 closed "POST /api/v1/jobs HTTP/1.1\r\n${H}Transfer-Encoding: gzip\r\n\r\n"
+raw "coded twice" 501 closed "POST /api/v1/jobs HTTP/1.1\r\n${H}Transfer-Encoding: gzip, chunked\r\n\r\n0\r\n\r\n"
+raw "two codings" 400 closed "POST /api/v1/jobs HTTP/1.1\r\n${H}Transfer-Encoding: chunked\r\nTransfer-Encoding: identity\r\n\r\n0\r\n\r\n"
+raw "a chunk size that is none" 400 closed "POST /api/v1/jobs HTTP/1.1\r\n${H}Transfer-Encoding: chunked\r\n\r\nzz\r\n\r\n"
+raw "a chunk size beyond all bounds" 413 closed "POST /api/v1/jobs HTTP/1.1\r\n${H}Transfer-Encoding: chunked\r\n\r\nFFFFFFFFFFFFFFFFFF\r\n\r\n"
+raw "target on another host" 421 closed "GET http://example.org/healthz HTTP/1.1\r\n$H\r\n"
+raw "absolute target" 200 open "GET http://localhost/healthz HTTP/1.1\r\n$H\r\n"
+raw "target without a slash" 400 closed "GET healthz HTTP/1.1\r\n$H\r\n"
+raw "fragment" 400 closed "GET /healthz#x HTTP/1.1\r\n$H\r\n"
+raw "NUL in the target" 400 closed "GET /healthz\0x HTTP/1.1\r\n$H\r\n"
+raw "encoded NUL" 400 closed "GET /healthz%%00 HTTP/1.1\r\n$H\r\n"
+raw "encoded way up" 400 closed "GET /%%2e%%2e/%%2e%%2e/etc/passwd HTTP/1.1\r\n$H\r\n"
+raw "folded header" 400 closed "GET /healthz HTTP/1.1\r\n$H folded: x\r\n\r\n"
+raw "unknown version" 505 closed "GET /healthz HTTP/2.0\r\n$H\r\n"
+raw "asterisk" 400 closed "OPTIONS * HTTP/1.1\r\n$H\r\n"
+raw "no HTTP at all" "" closed "\x16\x03\x01\x02\r\n\r\n"
+answer=$(printf "POST /api/v1/jobs HTTP/1.1\r\n${H}Content-Length: 4\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\nGET /metrics HTTP/1.1\r\n$H\r\n" | "$RAW" "$PORT")
+check "nothing smuggled is answered" 1 "$(grep -c '^HTTP/1.1' <<< "$answer")"
+answer=$(printf "GET /healthz HTTP/1.1\r\n$H\r\nGET /readyz HTTP/1.1\r\n$H\r\n" | "$RAW" "$PORT")
+check "pipelined requests are answered in turn" "ok ready" "$(sed -n 's/.*"status": "\(.*\)".*/\1/p' <<< "$answer" | paste -sd' ')"
+
+# Names that are not ours, pages that are not ours.
+for host in evil.example localhost.evil.example 10.0.0.1 '[::2]' 'localhost:80:80' 'localhost@evil' ''; do
+  fetch GET /healthz -H "Host: $host"
+  check_match "Host: $host" '^(421|400)$' "$CODE"
+done
+for host in localhost LOCALHOST:1 127.0.0.1 127.8.8.8:80 '[::1]' '[::1]:8080'; do
+  fetch GET /healthz -H "Host: $host"
+  check "Host: $host" 200 "$CODE"
+done
+fetch POST /api/v1/jobs:validate -H 'Origin: http://evil.example' --data-binary "$(job)"
+check "foreign origin" "403 cross_origin" "$CODE $(field .code)"
+fetch POST /api/v1/jobs:validate -H 'Origin: null' --data-binary "$(job)"
+check "null origin" 403 "$CODE"
+fetch POST /api/v1/jobs:validate -H "Origin: http://127.0.0.1:1" --data-binary "$(job)"
+check "another port" 403 "$CODE"
+fetch POST /api/v1/jobs:validate -H 'Sec-Fetch-Site: cross-site' --data-binary "$(job)"
+check "cross-site without origin" 403 "$CODE"
+fetch DELETE /api/v1/jobs/1 -H 'Origin: http://evil.example'
+check "foreign DELETE" 403 "$CODE"
+fetch POST /api/v1/jobs:validate -H "Origin: $URL" -H 'Sec-Fetch-Site: same-origin' --data-binary "$(job)"
+check "our own page" 200 "$CODE"
+
+# A header, and then a body, that trickle in.
+start=$SECONDS
+raw "slow header" 408 closed "GET /healthz HTTP/1.1\r\n${H}X-Slow: aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa\r\n\r\n" 200
+check "ended in time" true "$([ $((SECONDS - start)) -le 5 ] && echo true)"
+raw "slow body" 408 closed "POST /api/v1/jobs HTTP/1.1\r\n${H}Content-Length: 500\r\n\r\n{" 0 4000
+fetch GET /healthz
+check "others are served meanwhile" 200 "$CODE"
+
+# One address holds 20 connections; more are turned away, and the rest goes on.
+pids=()
+for _ in $(seq 30); do
+  sleep 1.5 | "$RAW" "$PORT" > "$WORK/idle.$_" 2>&1 &
+  pids+=($!)
+done
+sleep 0.7
+check "a connection over the limit is refused" 000 "$(curl -s -o /dev/null -m 2 -w '%{http_code}' "$URL/healthz")"
+wait "${pids[@]}"
+fetch GET /healthz
+check "afterwards there is room again" 200 "$CODE"
+
+# Many requests at once.
+for i in $(seq 8); do
+  for _ in $(seq 25); do
+    curl -s "$URL/api/v1/jobs" "$URL/metrics" -o "$WORK/load.$i" -o "$WORK/load.$i" -w '%{http_code}\n'
+  done > "$WORK/codes.$i" &
+done
+for _ in $(seq 20); do submit > /dev/null; done
+wait $(jobs -p | grep -vx "$DAEMON_PID")
+check "all were answered" "400 200" "$(cat "$WORK"/codes.* | sort | uniq -c | awk '{ print $1, $2 }')"
+for id in $(seq 20); do wait_state "$id" succeeded > /dev/null; done
+check "20 jobs, 20 results" "20 20" "$(sql "select count(*) || ' ' || (select count(*) from result) from job where state = 'succeeded'")"
+finish
