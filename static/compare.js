@@ -2,7 +2,7 @@
 
 import { request } from './api.js';
 import { find, make } from './dom.js';
-import { number, quantity } from './format.js';
+import { byImportance, number, quantity } from './format.js';
 import { showProblem } from './problem.js';
 
 function headOf(jobs) {
@@ -34,9 +34,10 @@ function metricRow({ name, values }) {
 
 function showTable({ jobs, parameters, metrics }) {
   const columns = jobs.length + 2;
+  const rows = metrics.sort((a, b) => byImportance(a.name, b.name));
   find('compare-table').replaceChildren(headOf(jobs),
     ...groupOf('Where the jobs differ', columns, parameters.map(parameterRow)),
-    ...groupOf('Results', columns, metrics.map(metricRow)));
+    ...groupOf('Results', columns, rows.map(metricRow)));
 }
 
 function showPlot(query, ids) {

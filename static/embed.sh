@@ -26,7 +26,7 @@ echo '/* Generated from static/ by static/embed.sh. */'
 echo '#include "server/http/static_files.h"'
 number=0
 for file in "$@"; do
-  echo "static const unsigned char data_$number[] = {"
+  echo "static const unsigned char data_${number}[] = {"
   od -An -v -tx1 "$source_dir/$file" | sed 's/ *\([0-9a-f][0-9a-f]\)/0x\1,/g'
   echo '};'
   number=$((number + 1))

@@ -16,6 +16,12 @@ const NAMES = {
   peak_memory_MB: ['Peak memory', 'MB'],
 };
 
+// What people look for first; everything else follows in the order of the alphabet.
+const FIRST = ['bending_angle_deg', 'sensitivity_deg_per_kPa', 'r_squared', 'intercept_deg',
+  'cai_rad_per_m_kPa', 'tip_deflection_mm', 'end_face_angle_deg', 'chord_angle_deg',
+  'contact_onset_kPa', 'max_stretch', 'min_gap_mm', 'max_penetration_mm', 'cavity_volume_mm3',
+  'mass_g'];
+
 // Longest endings first: the first that fits is the unit.
 const UNITS = [
   ['_deg_per_kPa', '°/kPa'], ['_m_s', 'm/s'], ['_mm3', 'mm³'], ['_kPa', 'kPa'], ['_deg', '°'],
@@ -42,6 +48,16 @@ export function quantity(key) {
   return found
     ? { label: sentence(key.slice(0, -found[0].length)), unit: found[1] }
     : { label: sentence(key), unit: '' };
+}
+
+function rank(key) {
+  const place = FIRST.indexOf(key);
+  return place < 0 ? FIRST.length : place;
+}
+
+// Compares two metrics by their keys, for sorting.
+export function byImportance(a, b) {
+  return rank(a) - rank(b) || (a < b ? -1 : Number(a > b));
 }
 
 // Narrow spaces between thousands, from five digits on.

@@ -2,7 +2,9 @@
 
 import { isActive, jobUrl, post, request } from './api.js';
 import { describe, find, make, setText } from './dom.js';
-import { instant, moment, number, quantity, stateWord, withUnit } from './format.js';
+import {
+  byImportance, instant, moment, number, quantity, stateWord, withUnit,
+} from './format.js';
 import { poll } from './poll.js';
 import { showProblem } from './problem.js';
 
@@ -89,7 +91,7 @@ function showState(job) {
 }
 
 function showMetrics(metrics) {
-  const entries = Object.entries(metrics || {});
+  const entries = Object.entries(metrics || {}).sort(([a], [b]) => byImportance(a, b));
   find('metrics').hidden = entries.length === 0;
   find('metric-table').replaceChildren(
     make('thead', {}, make('tr', {}, make('th', { scope: 'col' }, 'Metric'),

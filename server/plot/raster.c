@@ -46,9 +46,9 @@ void raster_bring_forward(struct raster *raster) {
 }
 
 static uint32_t pack(struct colour colour, double light) {
-  uint32_t r = (uint32_t)lround(255 * fmin(colour.r * light, 1.0));
-  uint32_t g = (uint32_t)lround(255 * fmin(colour.g * light, 1.0));
-  uint32_t b = (uint32_t)lround(255 * fmin(colour.b * light, 1.0));
+  uint32_t r = (uint32_t)(255 * fmin(colour.r * light, 1.0) + 0.5);
+  uint32_t g = (uint32_t)(255 * fmin(colour.g * light, 1.0) + 0.5);
+  uint32_t b = (uint32_t)(255 * fmin(colour.b * light, 1.0) + 0.5);
   return 0xff000000u | r << 16 | g << 8 | b;
 }
 
@@ -67,21 +67,23 @@ void raster_triangle(struct raster *raster, const struct raster_vertex corners[3
   int right = clamp(ceil(fmax(a->x, fmax(b->x, c->x))), raster->width);
   int top = clamp(floor(fmin(a->y, fmin(b->y, c->y))), raster->height);
   int bottom = clamp(ceil(fmax(a->y, fmax(b->y, c->y))), raster->height);
-  /* barycentric weights of b and c; a hair of slack closes the seams between neighbours */
+  /* wb, wc: barycentric weights of b and c, linear in x; a hair of slack closes the seams between
+   * neighbours */
   const double slack = -1e-6;
+  double wb_x = (c->y - a->y) / area, wb_y = -(c->x - a->x) / area;
+  double wc_x = -(b->y - a->y) / area, wc_y = (b->x - a->x) / area;
   for (int y = top; y < bottom; y++) {
-    for (int x = left; x < right; x++) {
-      double px = x + 0.5 - a->x, py = y + 0.5 - a->y;
-      double wb = (px * (c->y - a->y) - (c->x - a->x) * py) / area;
-      double wc = ((b->x - a->x) * py - px * (b->y - a->y)) / area;
+    double px = left + 0.5 - a->x, py = y + 0.5 - a->y;
+    double wb = px * wb_x + py * wb_y, wc = px * wc_x + py * wc_y;
+    size_t i = (size_t)y * (size_t)raster->width + (size_t)left;
+    for (int x = left; x < right; x++, i++, wb += wb_x, wc += wc_x) {
       if (wb < slack || wc < slack || wb + wc > 1 - slack) {
         continue;
       }
-      double depth = a->depth + wb * (b->depth - a->depth) + wc * (c->depth - a->depth);
-      size_t i = (size_t)y * (size_t)raster->width + (size_t)x;
+      float depth = (float)(a->depth + wb * (b->depth - a->depth) + wc * (c->depth - a->depth));
       if (depth < raster->depth[i]) {
         double value = a->value + wb * (b->value - a->value) + wc * (c->value - a->value);
-        raster->depth[i] = (float)depth;
+        raster->depth[i] = depth;
         raster->samples[i] = pack(shades[clamp(value * RASTER_SHADES, RASTER_SHADES - 1)], light);
       }
     }
@@ -102,7 +104,8 @@ void raster_line(struct raster *raster, const struct raster_vertex ends[2], stru
     for (int j = clamp(floor(y - half), raster->height); j < bottom; j++) {
       for (int i = clamp(floor(x - half), raster->width); i < right; i++) {
         size_t at = (size_t)j * (size_t)raster->width + (size_t)i;
-        if (hypot(i + 0.5 - x, j + 0.5 - y) <= half && depth <= raster->depth[at]) {
+        double from_x = i + 0.5 - x, from_y = j + 0.5 - y;
+        if (from_x * from_x + from_y * from_y <= half * half && depth <= raster->depth[at]) {
           raster->samples[at] = packed;
         }
       }
