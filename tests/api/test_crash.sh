@@ -5,7 +5,7 @@ SOLVER=$(solver '
 name=$(jq -r .name "$job")
 echo "$name" >> "'"$WORK"'/starts"
 case $name in
-  slow) exec 3>&1; sleep 1; result succeeded >&3 ;;
+  slow) until [ -e "'"$WORK"'/go" ]; do sleep 0.05; done; result succeeded ;;
   sleepy) progress 0.1 1; exec sleep 60 ;;
   dies) kill -KILL $$ ;;
   once) [ -e "'"$WORK"'/died" ] || { touch "'"$WORK"'/died"; kill -KILL $$; }; result succeeded ;;
@@ -59,6 +59,7 @@ for pid in $pids; do
 done
 check "the database is intact" ok "$(sql 'pragma integrity_check')"
 start_daemon --workers 2 --retry-delay 0.1 --memory-limit 64 --solver "$SOLVER"
+touch "$WORK/go"
 for id in $ids; do
   check "job $id runs again and succeeds" succeeded "$(wait_state "$id" 'succeeded|failed')"
 done
@@ -77,10 +78,11 @@ curl -s -X POST "$URL/api/v1/jobs/$sleepy/cancel" > /dev/null &
 sleep 0.05
 stop_daemon KILL
 wait
-start_daemon --workers 2 --retry-delay 0.1 --solver "$SOLVER" --drain-timeout 1
+start_daemon --workers 2 --retry-delay 0.1 --solver "$SOLVER" --drain-timeout 2
 check "cancelled" cancelled "$(wait_state "$sleepy" 'cancelled|running')"
 
 # SIGTERM: what finishes in time is kept, the rest goes back into the queue.
+rm "$WORK/go"
 slow=$(submit "$(job '.name = "slow"')")
 sleepy=$(submit "$(job '.name = "sleepy"')")
 later=$(submit "$(job '.name = "later"')")
@@ -89,10 +91,15 @@ sleep 0.3
 curl -s -o "$WORK/waiting" -H 'Prefer: wait=50' "$URL/api/v1/jobs/$sleepy" &
 sleep 0.3
 start=$SECONDS
-stop_daemon TERM
+kill -TERM "$DAEMON_PID"
+sleep 0.3
+touch "$WORK/go"
+wait "$DAEMON_PID"
+STATUS=$?
+DAEMON_PID=
 wait
 check "exit status" 0 "$STATUS"
-check "within the drain time and the workers' grace" true "$([ $((SECONDS - start)) -le 9 ] && echo true)"
+check "within the drain time and the workers' grace" true "$([ $((SECONDS - start)) -le 15 ] && echo true)"
 check "the one that finished" succeeded "$(sql "select state from job where id = $slow")"
 check "the one that did not" "queued daemon_stopped" "$(sql "select state || ' ' || reason_code from job where id = $sleepy")"
 check "the one that waited" queued "$(sql "select state from job where id = $later")"
