@@ -67,6 +67,13 @@ function grouped(text) {
   return rest === undefined ? spaced : `${spaced}.${rest}`;
 }
 
+// 7.085·10⁻⁵
+function scientific(size) {
+  const [digits, exponent] = size.toExponential(3).split('e');
+  const raised = [...exponent.replace('+', '')].map((c) => (c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[Number(c)]));
+  return `${digits}·10${raised.join('')}`;
+}
+
 // Four significant digits; whole numbers in full.
 export function number(value) {
   if (typeof value !== 'number' || !Number.isFinite(value)) {
@@ -77,7 +84,7 @@ export function number(value) {
   }
   const size = Math.abs(value);
   const text = size >= 1e7 || size < 1e-4
-    ? size.toExponential(3).replace('-', '−')
+    ? scientific(size)
     : grouped(size.toFixed(Math.max(0, 3 - Math.floor(Math.log10(size)))));
   return (value < 0 ? '−' : '') + text;
 }

@@ -29,7 +29,7 @@ let hasResult = false;
 function duration(job) {
   const from = instant(job.started);
   const to = instant(job.finished) || (isActive(job.state) ? new Date() : null);
-  return from && to ? `${number(Math.round((to - from) / 100) / 10)}\u00a0s` : '–';
+  return from && to ? `${((to - from) / 1000).toFixed(1)}\u00a0s` : '–';
 }
 
 function showFacts(job) {
