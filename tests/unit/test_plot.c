@@ -23,6 +23,17 @@ const char *__lsan_default_suppressions(void) {
   return "leak:libfontconfig\nleak:libpango\n";
 }
 
+/* The thread checker does not see the locks inside libraries that were built without it. */
+const char *__tsan_default_suppressions(void);
+const char *__tsan_default_suppressions(void) {
+  return "called_from_lib:libfontconfig.so\ncalled_from_lib:libglib-2.0.so\n"
+         "called_from_lib:libgobject-2.0.so\ncalled_from_lib:libcairo.so\n"
+         "called_from_lib:libpango-1.0.so\ncalled_from_lib:libpangocairo-1.0.so\n"
+         "called_from_lib:libpangoft2-1.0.so\ncalled_from_lib:libharfbuzz.so\n"
+         "called_from_lib:libfreetype.so\ncalled_from_lib:libpixman-1.so\n"
+         "called_from_lib:libfribidi.so\ncalled_from_lib:libexpat.so\n";
+}
+
 struct picture {
   png_image image;
   unsigned char *rgb;
