@@ -91,8 +91,8 @@ static enum status parts_open(const struct options *options, struct parts *parts
 }
 
 static void parts_close(struct parts *parts) {
+  server_destroy(parts->server); /* its handlers ask the pool */
   pool_destroy(parts->service.pool);
-  server_destroy(parts->server);
   waiters_destroy(parts->service.waiters);
   store_close(parts->service.store);
   if (parts->lock >= 0) {

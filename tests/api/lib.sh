@@ -10,12 +10,22 @@ DAEMON_PID=
 FAILED=0
 PASSED=0
 
+# Fontconfig keeps what it has read until the end of the process; GLib has locks of its own, which
+# ThreadSanitizer does not see.
+echo "leak:libfontconfig" > "$WORK/lsan.supp"
+for library in glib-2.0 gobject-2.0 pango-1.0 pangocairo-1.0 pangoft2-1.0 fontconfig cairo harfbuzz; do
+  printf "race:lib%s.so\\ncalled_from_lib:lib%s.so\\n" "$library" "$library"
+done > "$WORK/tsan.supp"
+export LSAN_OPTIONS="suppressions=$WORK/lsan.supp:print_suppressions=0"
+export TSAN_OPTIONS="suppressions=$WORK/tsan.supp"
+
 for tool in curl jq sqlite3; do
   command -v $tool > /dev/null || { echo "SKIP: $tool is not installed"; exit 77; }
 done
 
 # start_daemon OPTION...: sets DAEMON_PID, PORT and URL.
 start_daemon() {
+  : > "$WORK/stdout"
   "$BIN/pneulabd" --data "$DATA" --listen 127.0.0.1:0 "$@" > "$WORK/stdout" 2>> "$WORK/stderr" &
   DAEMON_PID=$!
   for _ in $(seq 200); do
