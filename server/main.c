@@ -18,6 +18,7 @@
 #include "server/http/server.h"
 #include "server/http/waiters.h"
 #include "server/store/store.h"
+#include "solver/job/spec.h"
 
 enum { SIGNAL_POLL_MS = 100 };
 
@@ -66,6 +67,9 @@ static enum status parts_open(const struct options *options, struct parts *parts
     status = store_recover(service->store, &recovered, error);
   }
   if (status == STATUS_OK) {
+    status = job_reader_create(&service->reader, error);
+  }
+  if (status == STATUS_OK) {
     status = waiters_create(&service->waiters, error);
   }
   if (status == STATUS_OK) {
@@ -94,6 +98,7 @@ static void parts_close(struct parts *parts) {
   server_destroy(parts->server); /* its handlers ask the pool */
   pool_destroy(parts->service.pool);
   waiters_destroy(parts->service.waiters);
+  job_reader_destroy(parts->service.reader);
   store_close(parts->service.store);
   if (parts->lock >= 0) {
     close(parts->lock);

@@ -16,7 +16,7 @@ enum {
   EXIT_STOPPED_EARLY = 3,
   EXIT_INTERNAL = 4,
   EXIT_CANCELLED = 5,
-  RESULT_BYTES_MAX = 64 << 20,
+  RESULT_BYTES_MAX = 16 << 20,
   ARTIFACTS_MAX = 4096
 };
 
@@ -182,6 +182,13 @@ void outcome_not_started(struct outcome *outcome, const struct error *error) {
   *outcome = (struct outcome){0};
   outcome_set(outcome, ATTEMPT_WORKER_LOST, "worker_not_started", "%s", error->message);
   outcome->attempt.exit_code = -1;
+}
+
+void outcome_set_unstorable(struct outcome *outcome, const struct error *error) {
+  outcome_set(outcome, ATTEMPT_FAILED, "result_refused", "%s", error->message);
+  outcome->attempt.result_text = NULL;
+  outcome->attempt.result = NULL;
+  outcome->attempt.artifacts = NULL;
 }
 
 void outcome_clear(struct outcome *outcome) {

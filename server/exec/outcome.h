@@ -37,6 +37,9 @@ void outcome_judge(struct outcome *outcome, const struct process_end *end, enum 
 /* The outcome of a worker that could not be started. */
 void outcome_not_started(struct outcome *outcome, const struct error *error);
 
+/* Makes a failure without a result of an outcome whose result the store refused. */
+void outcome_set_unstorable(struct outcome *outcome, const struct error *error);
+
 void outcome_clear(struct outcome *outcome);
 
 /* Whether `result` has the form of a result document: "status" a text, "metrics" an object of

@@ -7,7 +7,7 @@
 #include "server/base/log.h"
 #include "server/exec/run.h"
 
-enum { IDLE_MS = 500 };
+enum { IDLE_MS = 500, STORE_RETRY_MS = 1000 };
 
 /* One thread of the pool and the job it runs. */
 struct slot {
@@ -83,20 +83,44 @@ static void slot_assign(struct slot *slot, const struct claim *claim) {
   pthread_mutex_unlock(&pool->mutex);
 }
 
-/* Stores the outcome. A database that fails for the moment (a full disk) is asked again for a
- * while; after that the attempt stays open and is recovered at the next start. */
-static void slot_finish(struct slot *slot, const struct outcome *outcome) {
+/* Pauses between tries to store an outcome; false once the pool ends. */
+static bool slot_pause(struct slot *slot) {
+  struct pool *pool = slot->pool;
+  struct timespec until = clock_deadline(STORE_RETRY_MS);
+  pthread_mutex_lock(&pool->mutex);
+  while (!pool->stopping && pthread_cond_timedwait(&pool->work, &pool->mutex, &until) == 0) {
+  }
+  bool stopping = pool->stopping;
+  pthread_mutex_unlock(&pool->mutex);
+  return !stopping;
+}
+
+/* Stores the outcome. While the database fails (a full disk) it is asked again; if the daemon ends
+ * before that helps, the attempt stays open and is recovered at the next start. A result that the
+ * database refuses fails the job. */
+static enum status slot_store(struct slot *slot, struct outcome *outcome, enum job_state *state,
+                              struct error *error) {
+  struct store *store = slot->pool->settings.store;
+  enum status status;
+  while ((status = store_attempt_finish(store, &outcome->attempt, state, error)) == STATUS_IO ||
+         status == STATUS_NO_MEMORY) {
+    log_line("job %lld attempt %lld: %s", (long long)slot->job_id, (long long)slot->attempt,
+             error->message);
+    if (!slot_pause(slot)) {
+      return status;
+    }
+  }
+  if (status == STATUS_CONFLICT && outcome->attempt.result_text) {
+    outcome_set_unstorable(outcome, error);
+    status = store_attempt_finish(store, &outcome->attempt, state, error);
+  }
+  return status;
+}
+
+static void slot_finish(struct slot *slot, struct outcome *outcome) {
   struct error error;
   enum job_state state;
-  enum status status = STATUS_IO;
-  for (int try = 0; try < 20 && (status == STATUS_IO || status == STATUS_NO_MEMORY); try++) {
-    if (try > 0) {
-      struct timespec pause = {.tv_nsec = 500000000};
-      nanosleep(&pause, NULL);
-    }
-    status = store_attempt_finish(slot->pool->settings.store, &outcome->attempt, &state, &error);
-  }
-  if (status != STATUS_OK) {
+  if (slot_store(slot, outcome, &state, &error) != STATUS_OK) {
     log_line("job %lld attempt %lld: %s", (long long)slot->job_id, (long long)slot->attempt,
              error.message);
     return;

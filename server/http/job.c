@@ -86,8 +86,9 @@ void job_cancel(struct request *request, struct reply *reply) {
 }
 
 /* A terminal job is immutable, so to retry it is to submit its document again. */
-static enum status job_resubmit(struct store *store, int64_t id, int64_t *new_id,
+static enum status job_resubmit(const struct service *service, int64_t id, int64_t *new_id,
                                 struct error *error) {
+  struct store *store = service->store;
   struct job_record record;
   struct job_spec spec;
   struct submission submission = {.retry_of = id};
@@ -109,7 +110,7 @@ static enum status job_resubmit(struct store *store, int64_t id, int64_t *new_id
   }
   /* Checked anew: the rules may have changed since. */
   if (status == STATUS_OK) {
-    status = job_spec_read(text, strlen(text), &spec, error);
+    status = job_reader_read(service->reader, text, strlen(text), &spec, error);
   }
   if (status == STATUS_OK) {
     status = json_text_read(text, strlen(text), &root, error);
@@ -134,7 +135,7 @@ void job_retry(struct request *request, struct reply *reply) {
   }
   if (atomic_load(&request->service->draining)) {
     reply_problem(reply, 503, "shutting_down", "The server is shutting down; try again later.");
-  } else if (job_resubmit(request->service->store, id, &new_id, &error) != STATUS_OK) {
+  } else if (job_resubmit(request->service, id, &new_id, &error) != STATUS_OK) {
     reply_error(reply, &error);
   } else {
     pool_wake(request->service->pool);

@@ -13,7 +13,8 @@ static bool document_check(const struct request *request, struct reply *reply,
                            struct job_spec *spec, json_t **root) {
   struct error error = {.status = STATUS_OK};
   const char *text = request->body ? request->body : "";
-  if (job_spec_read(text, request->body_size, spec, &error) == STATUS_OK &&
+  if (job_reader_read(request->service->reader, text, request->body_size, spec, &error) ==
+          STATUS_OK &&
       json_text_read(text, request->body_size, root, &error) == STATUS_OK) {
     return true;
   }

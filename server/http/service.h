@@ -13,6 +13,7 @@
 #include "server/store/store.h"
 
 struct MHD_Connection;
+struct job_reader;
 struct waiters;
 
 enum { HTTP_BODY_MAX = 1 << 20, HTTP_WAIT_MAX_S = 60 };
@@ -22,6 +23,7 @@ struct service {
   struct store *store;
   struct pool *pool;
   struct waiters *waiters;
+  struct job_reader *reader; /* checks job documents */
   const char *data;          /* data directory */
   bool loopback;             /* listening on a loopback address: Host must be one too */
   int64_t started_ms;        /* on the monotonic clock */

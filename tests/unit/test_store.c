@@ -1,0 +1,400 @@
+/* The results database: durability rules, the state machine, the fence, lists. */
+#include <check.h>
+#include <sqlite3.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "server/base/file.h"
+#include "server/store/store.h"
+
+static char directory[64];
+static struct store *store;
+
+static const char document[] = "{\"kind\":\"response\",\"name\":\"n\",\"labels\":{\"paper\":\"m\"},"
+                               "\"actuator\":{\"height\":\"15.6 mm\",\"count\":3,\"on\":true,"
+                               "\"a/b~c\":\"text\"}}";
+
+static void store_setup(void) {
+  struct error error;
+  strcpy(directory, "/tmp/pneulab-store-XXXXXX");
+  ck_assert_ptr_nonnull(mkdtemp(directory));
+  ck_assert_msg(store_open(directory, &store, &error) == STATUS_OK, "%s", error.message);
+}
+
+static void store_teardown(void) {
+  store_close(store);
+  file_remove_tree(directory);
+}
+
+static void store_reopen(void) {
+  struct error error;
+  store_close(store);
+  ck_assert_msg(store_open(directory, &store, &error) == STATUS_OK, "%s", error.message);
+}
+
+static int64_t submit_text(const char *text, const char *key, enum status expected,
+                           bool *replayed) {
+  struct error error;
+  int64_t id = 0;
+  json_t *root = json_loads(text, 0, NULL);
+  ck_assert_ptr_nonnull(root);
+  struct submission submission = {
+      .document = text, .root = root, .spec_hash = "00", .idempotency_key = key};
+  ck_assert_int_eq(store_submit(store, &submission, &id, replayed, &error), expected);
+  json_decref(root);
+  return id;
+}
+
+static int64_t submit(void) {
+  bool replayed;
+  return submit_text(document, NULL, STATUS_OK, &replayed);
+}
+
+static struct claim claim_next(void) {
+  struct claim claim;
+  struct error error;
+  bool claimed;
+  ck_assert_int_eq(store_claim(store, &claim, &claimed, &error), STATUS_OK);
+  ck_assert(claimed);
+  free(claim.document);
+  claim.document = NULL;
+  return claim;
+}
+
+static bool claim_none(void) {
+  struct claim claim;
+  struct error error;
+  bool claimed;
+  ck_assert_int_eq(store_claim(store, &claim, &claimed, &error), STATUS_OK);
+  free(claim.document);
+  return !claimed;
+}
+
+static enum job_state state_of(int64_t id) {
+  struct job_record record;
+  struct error error;
+  ck_assert_int_eq(store_job(store, id, &record, &error), STATUS_OK);
+  enum job_state state = record.state;
+  job_record_clear(&record);
+  return state;
+}
+
+static enum status finish(const struct claim *claim, enum attempt_end end, enum job_state *state) {
+  static const char text[] = "{\"status\":\"succeeded\",\"metrics\":{\"angle_deg\":1.5},"
+                             "\"samples\":[{\"p_kPa\":1},{\"p_kPa\":2}]}";
+  struct error error;
+  json_t *result = json_loads(text, 0, NULL);
+  json_t *artifacts = json_pack("{s:i}", "surface.json", 12);
+  struct attempt_outcome outcome = {.job_id = claim->job_id,
+                                    .attempt = claim->attempt,
+                                    .end = end,
+                                    .reason_code = "why",
+                                    .message = "",
+                                    .exit_code = 0,
+                                    .directory = "attempts/x"};
+  if (end == ATTEMPT_SUCCEEDED) {
+    outcome.result_text = text;
+    outcome.result = result;
+    outcome.artifacts = artifacts;
+  }
+  enum status status = store_attempt_finish(store, &outcome, state, &error);
+  json_decref(result);
+  json_decref(artifacts);
+  return status;
+}
+
+static struct claim run_next(void) {
+  struct error error;
+  struct claim claim = claim_next();
+  ck_assert_int_eq(store_attempt_running(store, claim.job_id, claim.attempt, 1, &error), STATUS_OK);
+  return claim;
+}
+
+/* A number from the database as any other program sees it. */
+static double sql_number(const char *sql) {
+  char path[100];
+  sqlite3 *db;
+  sqlite3_stmt *statement;
+  snprintf(path, sizeof path, "%s/pneulab.db", directory);
+  ck_assert_int_eq(sqlite3_open(path, &db), SQLITE_OK);
+  ck_assert_msg(sqlite3_prepare_v2(db, sql, -1, &statement, NULL) == SQLITE_OK, "%s",
+                sqlite3_errmsg(db));
+  ck_assert_int_eq(sqlite3_step(statement), SQLITE_ROW);
+  double value = sqlite3_column_double(statement, 0);
+  sqlite3_finalize(statement);
+  sqlite3_close(db);
+  return value;
+}
+
+static bool sql_allowed(const char *sql) {
+  char path[100];
+  sqlite3 *db;
+  snprintf(path, sizeof path, "%s/pneulab.db", directory);
+  ck_assert_int_eq(sqlite3_open(path, &db), SQLITE_OK);
+  bool allowed = sqlite3_exec(db, sql, NULL, NULL, NULL) == SQLITE_OK;
+  sqlite3_close(db);
+  return allowed;
+}
+
+START_TEST(job_survives_reopening) {
+  int64_t id = submit();
+  store_reopen();
+  char *text;
+  struct error error;
+  ck_assert_int_eq(store_document(store, id, &text, &error), STATUS_OK);
+  ck_assert_str_eq(text, document);
+  free(text);
+  ck_assert_int_eq(state_of(id), JOB_STATE_QUEUED);
+}
+END_TEST
+
+START_TEST(parameters_are_flattened_in_si) {
+  submit();
+  ck_assert_double_eq_tol(
+      sql_number("SELECT value FROM design_parameter WHERE pointer = '/actuator/height' "
+                 "AND unit = 'm'"),
+      0.0156, 1e-15);
+  ck_assert_double_eq(
+      sql_number("SELECT value FROM design_parameter WHERE pointer = '/actuator/count'"), 3);
+  ck_assert_double_eq(
+      sql_number("SELECT value FROM design_parameter WHERE pointer = '/actuator/on'"), 1);
+  ck_assert_double_eq(sql_number("SELECT count(*) FROM design_parameter "
+                                 "WHERE pointer = '/actuator/a~1b~0c' AND text = 'text'"),
+                      1);
+  ck_assert_double_eq(sql_number("SELECT count(*) FROM design_parameter WHERE pointer GLOB "
+                                 "'/name*' OR pointer GLOB '/labels*'"),
+                      0);
+}
+END_TEST
+
+START_TEST(idempotency_key_names_one_job) {
+  bool replayed;
+  int64_t first = submit_text(document, "key", STATUS_OK, &replayed);
+  ck_assert(!replayed);
+  ck_assert_int_eq(submit_text(document, "key", STATUS_OK, &replayed), first);
+  ck_assert(replayed);
+  submit_text("{\"kind\":\"response\"}", "key", STATUS_CONFLICT, &replayed);
+  ck_assert_int_ne(submit_text(document, "other", STATUS_OK, &replayed), first);
+}
+END_TEST
+
+START_TEST(oldest_job_is_claimed_first_and_once) {
+  int64_t first = submit(), second = submit();
+  struct claim claim = claim_next();
+  ck_assert_int_eq(claim.job_id, first);
+  ck_assert_int_eq(claim.attempt, 1);
+  ck_assert_int_eq(claim_next().job_id, second);
+  ck_assert(claim_none());
+}
+END_TEST
+
+START_TEST(result_arrives_with_the_state) {
+  enum job_state state;
+  struct job_record record;
+  struct error error;
+  submit();
+  struct claim claim = run_next();
+  ck_assert_int_eq(finish(&claim, ATTEMPT_SUCCEEDED, &state), STATUS_OK);
+  ck_assert_int_eq(state, JOB_STATE_SUCCEEDED);
+  ck_assert_int_eq(store_job(store, claim.job_id, &record, &error), STATUS_OK);
+  ck_assert(record.has_result);
+  ck_assert_double_eq(json_number_value(json_object_get(record.metrics, "angle_deg")), 1.5);
+  ck_assert_str_eq(json_string_value(json_array_get(record.artifacts, 0)), "surface.json");
+  job_record_clear(&record);
+  ck_assert_double_eq(sql_number("SELECT sum(value) FROM sample"), 3);
+  ck_assert_int_eq(store_artifact(store, claim.job_id, "surface.json", &error), STATUS_OK);
+  ck_assert_int_eq(store_artifact(store, claim.job_id, "../pneulab.db", &error), STATUS_NOT_FOUND);
+}
+END_TEST
+
+START_TEST(late_writer_is_fenced) {
+  enum job_state state;
+  int64_t count;
+  struct error error;
+  int64_t id = submit();
+  struct claim lost = run_next();
+  ck_assert_int_eq(store_recover(store, &count, &error), STATUS_OK); /* as after a crash */
+  ck_assert_int_eq(count, 1);
+  ck_assert_int_eq(finish(&lost, ATTEMPT_SUCCEEDED, &state), STATUS_CONFLICT);
+  ck_assert_int_eq(state_of(id), JOB_STATE_QUEUED);
+  struct claim again = run_next();
+  ck_assert_int_eq(again.attempt, 2);
+  ck_assert_int_eq(finish(&lost, ATTEMPT_SUCCEEDED, &state), STATUS_CONFLICT);
+  ck_assert_int_eq(finish(&again, ATTEMPT_SUCCEEDED, &state), STATUS_OK);
+  ck_assert_int_eq(finish(&again, ATTEMPT_SUCCEEDED, &state), STATUS_CONFLICT);
+  ck_assert_double_eq(sql_number("SELECT count(*) FROM result"), 1);
+  ck_assert_double_eq(sql_number("SELECT attempt FROM result"), 2);
+}
+END_TEST
+
+START_TEST(lost_workers_fail_the_job_in_the_end) {
+  enum job_state state;
+  submit();
+  for (int i = 0; i < STORE_FAILURES_MAX; i++) {
+    struct claim claim = run_next();
+    ck_assert_int_eq(finish(&claim, ATTEMPT_WORKER_LOST, &state), STATUS_OK);
+    ck_assert_int_eq(state, JOB_STATE_RETRY_WAIT);
+  }
+  struct claim claim = run_next();
+  ck_assert_int_eq(finish(&claim, ATTEMPT_WORKER_LOST, &state), STATUS_OK);
+  ck_assert_int_eq(state, JOB_STATE_FAILED);
+  ck_assert(claim_none());
+}
+END_TEST
+
+START_TEST(jobs_that_are_always_lost_fail) {
+  struct error error;
+  int64_t count, id = submit();
+  for (int i = 0; i < STORE_ATTEMPTS_MAX; i++) {
+    ck_assert_int_eq(state_of(id), JOB_STATE_QUEUED);
+    run_next();
+    ck_assert_int_eq(store_recover(store, &count, &error), STATUS_OK);
+  }
+  ck_assert_int_eq(state_of(id), JOB_STATE_FAILED);
+}
+END_TEST
+
+START_TEST(requeued_jobs_do_not_count_as_failures) {
+  enum job_state state;
+  submit();
+  for (int i = 0; i < STORE_FAILURES_MAX + 2; i++) {
+    struct claim claim = run_next();
+    ck_assert_int_eq(finish(&claim, ATTEMPT_REQUEUED, &state), STATUS_OK);
+    ck_assert_int_eq(state, JOB_STATE_QUEUED);
+  }
+}
+END_TEST
+
+START_TEST(cancelling_wins) {
+  enum job_state state;
+  struct error error;
+  int64_t waiting = submit();
+  ck_assert_int_eq(store_cancel(store, waiting, &state, &error), STATUS_OK);
+  ck_assert_int_eq(state, JOB_STATE_CANCELLED);
+  ck_assert_int_eq(store_cancel(store, waiting, &state, &error), STATUS_CONFLICT);
+  submit();
+  struct claim claim = run_next();
+  ck_assert_int_eq(store_cancel(store, claim.job_id, &state, &error), STATUS_OK);
+  ck_assert_int_eq(state, JOB_STATE_CANCELLING);
+  ck_assert_int_eq(finish(&claim, ATTEMPT_SUCCEEDED, &state), STATUS_OK);
+  ck_assert_int_eq(state, JOB_STATE_CANCELLED);
+  ck_assert_double_eq(sql_number("SELECT count(*) FROM result"), 0);
+  submit();
+  claim = claim_next();
+  ck_assert_int_eq(store_cancel(store, claim.job_id, &state, &error), STATUS_OK);
+  ck_assert_int_eq(store_attempt_running(store, claim.job_id, claim.attempt, 1, &error),
+                   STATUS_CONFLICT);
+}
+END_TEST
+
+/* Whatever is not in the table of transitions is refused, whoever tries. */
+START_TEST(illegal_transitions_are_refused) {
+  static const char *const legal[][2] = {
+      {"queued", "starting"},      {"queued", "held"},          {"queued", "cancelled"},
+      {"held", "queued"},          {"held", "cancelled"},       {"starting", "running"},
+      {"starting", "cancelling"},  {"starting", "queued"},      {"starting", "retry_wait"},
+      {"starting", "failed"},      {"running", "succeeded"},    {"running", "failed"},
+      {"running", "timed_out"},    {"running", "cancelling"},   {"running", "retry_wait"},
+      {"running", "queued"},       {"cancelling", "cancelled"}, {"retry_wait", "starting"},
+      {"retry_wait", "cancelled"},
+  };
+  for (int from = 0; from < JOB_STATE_COUNT; from++) {
+    for (int to = 0; to < JOB_STATE_COUNT; to++) {
+      const char *from_word = job_state_word((enum job_state)from);
+      const char *to_word = job_state_word((enum job_state)to);
+      bool expected = from == to;
+      for (size_t i = 0; i < sizeof legal / sizeof *legal; i++) {
+        expected =
+            expected || (strcmp(legal[i][0], from_word) == 0 && strcmp(legal[i][1], to_word) == 0);
+      }
+      char sql[300];
+      snprintf(sql, sizeof sql,
+               "BEGIN; INSERT INTO job (state, kind, name, document, spec_hash, "
+               "created_ms) VALUES ('%s', 'k', '', '', '', 0); UPDATE job SET state = '%s' WHERE "
+               "id = last_insert_rowid();",
+               from_word, to_word);
+      ck_assert_msg(sql_allowed(sql) == expected, "%s -> %s", from_word, to_word);
+    }
+  }
+}
+END_TEST
+
+START_TEST(only_terminal_jobs_are_deleted) {
+  enum job_state state;
+  struct error error;
+  int64_t id = submit();
+  ck_assert_int_eq(store_delete(store, id, &error), STATUS_CONFLICT);
+  ck_assert(!sql_allowed("DELETE FROM job"));
+  struct claim claim = run_next();
+  finish(&claim, ATTEMPT_SUCCEEDED, &state);
+  ck_assert_int_eq(store_delete(store, id, &error), STATUS_OK);
+  ck_assert_int_eq(store_delete(store, id, &error), STATUS_NOT_FOUND);
+  ck_assert_double_eq(sql_number("SELECT (SELECT count(*) FROM result) + (SELECT count(*) FROM "
+                                 "metric) + (SELECT count(*) FROM design_parameter)"),
+                      0);
+  ck_assert_int_gt(submit(), id); /* ids are not used again */
+}
+END_TEST
+
+START_TEST(newer_database_is_refused) {
+  struct error error;
+  struct store *second = NULL;
+  ck_assert(sql_allowed("PRAGMA user_version = 9999"));
+  ck_assert_int_eq(store_open(directory, &second, &error), STATUS_CONFLICT);
+  ck_assert_ptr_null(second);
+  ck_assert(sql_allowed("PRAGMA user_version = 1"));
+}
+END_TEST
+
+START_TEST(pages_cover_every_job_once) {
+  struct list_query query = {.sort = LIST_BY_CREATED, .limit = 4};
+  struct job_record *records;
+  struct error error;
+  size_t count;
+  int64_t seen = 0, pages = 0, next;
+  for (int i = 0; i < 10; i++) {
+    submit();
+  }
+  do {
+    ck_assert_int_eq(store_list(store, &query, &records, &count, &next, &error), STATUS_OK);
+    for (size_t i = 0; i < count; i++) {
+      ck_assert_int_eq(records[i].id, ++seen);
+      job_record_clear(&records[i]);
+    }
+    free(records);
+    pages++;
+    query.cursor = next;
+  } while (next != 0);
+  ck_assert_int_eq(seen, 10);
+  ck_assert_int_eq(pages, 3);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("store");
+  TCase *tests = tcase_create("store");
+  tcase_add_checked_fixture(tests, store_setup, store_teardown);
+  tcase_set_timeout(tests, 60);
+  tcase_add_test(tests, job_survives_reopening);
+  tcase_add_test(tests, parameters_are_flattened_in_si);
+  tcase_add_test(tests, idempotency_key_names_one_job);
+  tcase_add_test(tests, oldest_job_is_claimed_first_and_once);
+  tcase_add_test(tests, result_arrives_with_the_state);
+  tcase_add_test(tests, late_writer_is_fenced);
+  tcase_add_test(tests, lost_workers_fail_the_job_in_the_end);
+  tcase_add_test(tests, jobs_that_are_always_lost_fail);
+  tcase_add_test(tests, requeued_jobs_do_not_count_as_failures);
+  tcase_add_test(tests, cancelling_wins);
+  tcase_add_test(tests, illegal_transitions_are_refused);
+  tcase_add_test(tests, only_terminal_jobs_are_deleted);
+  tcase_add_test(tests, newer_database_is_refused);
+  tcase_add_test(tests, pages_cover_every_job_once);
+  suite_add_tcase(suite, tests);
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_NORMAL);
+  int failures = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
