@@ -25,6 +25,9 @@ handler compare_show;
 /* catalogue.c: what the program knows by itself */
 handler catalogue_materials, catalogue_schema, catalogue_openapi;
 
+/* database.c */
+handler database_show;
+
 /* health.c */
 handler health_live, health_ready, health_metrics;
 

@@ -29,6 +29,7 @@ static const struct route {
     {HTTP_GET, "api/v1/jobs/{id}/plots/{plot}.png", plot_job},
     {HTTP_GET, "api/v1/plots/overlay.png", plot_overlay},
     {HTTP_GET, "api/v1/compare", compare_show},
+    {HTTP_GET, "api/v1/database", database_show},
     {HTTP_GET, "api/v1/materials", catalogue_materials},
     {HTTP_GET, "api/v1/schemas/{name}", catalogue_schema},
     {HTTP_GET, "openapi.yaml", catalogue_openapi},

@@ -173,6 +173,9 @@ enum status store_attempts(struct store *store, int64_t id, json_t **attempts, s
 enum status store_parameters(struct store *store, int64_t id, json_t **parameters,
                              struct error *error);
 
+/* Writes a consistent copy of the database, of one moment, to an empty or absent file. */
+enum status store_snapshot(struct store *store, const char *path, struct error *error);
+
 /* Number of jobs in each state. */
 enum status store_counts(struct store *store, int64_t counts[JOB_STATE_COUNT], struct error *error);
 

@@ -102,4 +102,21 @@ for query in 'jobs=' 'jobs=1,' 'jobs=1,1' 'jobs=x' '' 'jobs=1&jobs=2' 'jobs=1,-2
 done
 fetch GET '/api/v1/compare?jobs=1,4711'
 check "compare with a job that does not exist" 404 "$CODE"
+
+# The API description and the routes agree: each path offers exactly the methods it is said to.
+fetch GET /openapi.yaml
+described=$(awk '/^paths:/ { on = 1 } /^components:/ { on = 0 }
+  on && /^  \// { path = $1; sub(/:$/, "", path); next }
+  on && /^    (get|post|delete|put|patch):/ { sub(/:.*/, "", $1); print path, toupper($1) }' <<< "$BODY")
+check "paths are described" true "$([ "$(wc -l <<< "$described")" -ge 26 ] && echo true)"
+for path in $(cut -d' ' -f1 <<< "$described" | sort -u); do
+  want=$(sed -n "s|^$path ||p" <<< "$described" | sed 's/^GET$/GET\nHEAD/' | sort | paste -sd' ')
+  fetch OPTIONS "$(sed 's/{id}/1/; s/{[a-z]*}/x/' <<< "$path")"
+  check "methods of $path" "405 $want" "$CODE $(header Allow | tr -d ',' | tr ' ' '\n' | sort | paste -sd' ')"
+done
+fetch GET /api/v1/database
+check "snapshot" "200 application/vnd.sqlite3" "$CODE $(header Content-Type)"
+check "the snapshot is whole" "ok $(sql 'select count(*) from job')" \
+  "$(sqlite3 "$WORK/body" 'pragma integrity_check; select count(*) from job' | paste -sd' ')"
+check "no snapshot is left behind" "" "$(ls "$DATA" | grep snapshot)"
 finish
