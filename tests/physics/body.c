@@ -1,5 +1,6 @@
 #include "tests/physics/body.h"
 
+#include <cblas.h>
 #include <check.h>
 #include <math.h>
 #include <stdlib.h>
@@ -140,6 +141,7 @@ void body_add_traction(struct fe_model *model, int axis, double at, const double
 }
 
 struct fe_model *body_model(const struct mesh *mesh, const struct material_spec *material) {
+  openblas_set_num_threads(1); /* as the solver does */
   struct fe_model *model;
   struct error error = {0};
   enum status status = model_create(mesh, material, false, &model, &error);

@@ -1,5 +1,6 @@
 #include "tests/physics/pneunet_case.h"
 
+#include <cblas.h>
 #include <check.h>
 #include <math.h>
 #include <string.h>
@@ -46,6 +47,7 @@ void case_refine(struct job_spec *spec, int n) {
 }
 
 void case_open(struct pneunet_case *c, const struct job_spec *spec) {
+  openblas_set_num_threads(1); /* as the solver does */
   struct error error = {0};
   memset(c, 0, sizeof *c);
   c->spec = *spec;
