@@ -1,9 +1,9 @@
+# shellcheck shell=bash disable=SC2034
 # Shared by the tests of the API: a real daemon on a free port with a data directory of its own,
 # and checks that count. Source it; it cleans up when the test ends.
 # Needs: bash, curl, jq, sqlite3. Binaries: $BIN (default: the current directory).
 set -u
 BIN=${BIN:-$PWD}
-SRC=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 WORK=$(mktemp -d)
 DATA=$WORK/data
 DAEMON_PID=
@@ -13,7 +13,8 @@ PASSED=0
 # Fontconfig keeps what it has read until the end of the process; GLib has locks of its own, which
 # ThreadSanitizer does not see.
 echo "leak:libfontconfig" > "$WORK/lsan.supp"
-for library in glib-2.0 gobject-2.0 pango-1.0 pangocairo-1.0 pangoft2-1.0 fontconfig cairo harfbuzz; do
+for library in glib-2.0 gobject-2.0 pango-1.0 pangocairo-1.0 pangoft2-1.0 fontconfig cairo \
+  harfbuzz freetype pixman-1; do
   printf "race:lib%s.so\\ncalled_from_lib:lib%s.so\\n" "$library" "$library"
 done > "$WORK/tsan.supp"
 export LSAN_OPTIONS="suppressions=$WORK/lsan.supp:print_suppressions=0"
@@ -55,7 +56,7 @@ cleanup() {
     wait "$DAEMON_PID" 2> /dev/null
   fi
   if [ "$FAILED" -ne 0 ]; then
-    echo "the daemon's log:"; tail -40 "$WORK/stderr"
+    echo "the daemon's log:"; tail -200 "$WORK/stderr"
   fi
   rm -rf "$WORK"
 }

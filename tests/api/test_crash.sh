@@ -44,7 +44,7 @@ curl -s -X POST "$URL/api/v1/jobs/$sleepy/cancel" > /dev/null
 wait $other
 
 # The daemon is killed in the middle of jobs.
-for i in 1 2 3 4; do submit "$(job '.name = "slow"')" > /dev/null; done
+for _ in 1 2 3 4; do submit "$(job '.name = "slow"')" > /dev/null; done
 sleepy=$(submit "$(job '.name = "sleepy"')")
 ids=$(sql "select id from job where name = 'slow'")
 wait_state "$(head -1 <<< "$ids")" running > /dev/null

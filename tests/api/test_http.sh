@@ -85,15 +85,4 @@ wait "${pids[@]}"
 fetch GET /healthz
 check "afterwards there is room again" 200 "$CODE"
 
-# Many requests at once.
-for i in $(seq 8); do
-  for _ in $(seq 25); do
-    curl -s "$URL/api/v1/jobs" "$URL/metrics" -o "$WORK/load.$i" -o "$WORK/load.$i" -w '%{http_code}\n'
-  done > "$WORK/codes.$i" &
-done
-for _ in $(seq 20); do submit > /dev/null; done
-wait $(jobs -p | grep -vx "$DAEMON_PID")
-check "all were answered" "400 200" "$(cat "$WORK"/codes.* | sort | uniq -c | awk '{ print $1, $2 }')"
-for id in $(seq 20); do wait_state "$id" succeeded > /dev/null; done
-check "20 jobs, 20 results" "20 20" "$(sql "select count(*) || ' ' || (select count(*) from result) from job where state = 'succeeded'")"
 finish

@@ -118,5 +118,5 @@ fetch GET /api/v1/database
 check "snapshot" "200 application/vnd.sqlite3" "$CODE $(header Content-Type)"
 check "the snapshot is whole" "ok $(sql 'select count(*) from job')" \
   "$(sqlite3 "$WORK/body" 'pragma integrity_check; select count(*) from job' | paste -sd' ')"
-check "no snapshot is left behind" "" "$(ls "$DATA" | grep snapshot)"
+check "no snapshot is left behind" "" "$(find "$DATA" -name "snapshot*")"
 finish
