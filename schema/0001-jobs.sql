@@ -186,52 +186,63 @@ FROM sample GROUP BY job_id, step;
 -- One row a finished job: what was asked and what came out, without a join. A parameter that
 -- the job left to its default is NULL here.
 CREATE VIEW comparison AS
-WITH parameter AS (
-  SELECT job_id,
-    max(text)  FILTER (WHERE pointer = '/actuator/family')               AS family,
-    1e3 * max(value) FILTER (WHERE pointer = '/actuator/length')         AS length_mm,
-    1e3 * max(value) FILTER (WHERE pointer = '/actuator/width')          AS width_mm,
-    1e3 * max(value) FILTER (WHERE pointer IN ('/actuator/height', '/actuator/height/base'))
-                                                                         AS height_mm,
-    sum(value) FILTER (WHERE pointer GLOB '/actuator/chambers/[0-9]*/count') AS chambers,
-    1e3 * max(value) FILTER (WHERE pointer = '/actuator/chamber_gap')    AS chamber_gap_mm,
-    1e3 * max(value) FILTER (WHERE pointer = '/actuator/side_wall')      AS side_wall_mm,
-    1e3 * max(value) FILTER (WHERE pointer = '/actuator/gap_wall')       AS gap_wall_mm,
-    1e3 * max(value) FILTER (WHERE pointer = '/actuator/top_wall')       AS top_wall_mm,
-    1e3 * max(value) FILTER (WHERE pointer = '/actuator/bottom_layer')   AS bottom_layer_mm,
-    max(text)  FILTER (WHERE pointer IN ('/material', '/material/model')) AS material,
-    1e-3 * max(value) FILTER (WHERE pointer = '/load/pressure/to')       AS pressure_to_kPa,
-    max(text)  FILTER (WHERE pointer = '/contact')                       AS contact,
-    max(text)  FILTER (WHERE pointer = '/accuracy')                      AS accuracy
-  FROM design_parameter GROUP BY job_id),
-outcome AS (
-  SELECT job_id,
-    max(value) FILTER (WHERE name = 'bending_angle_deg')       AS bending_angle_deg,
-    max(value) FILTER (WHERE name = 'chord_angle_deg')         AS chord_angle_deg,
-    max(value) FILTER (WHERE name = 'end_face_angle_deg')      AS end_face_angle_deg,
-    max(value) FILTER (WHERE name = 'sensitivity_deg_per_kPa') AS sensitivity_deg_per_kPa,
-    max(value) FILTER (WHERE name = 'r_squared')               AS r_squared,
-    max(value) FILTER (WHERE name = 'cai_rad_per_m_kPa')       AS cai_rad_per_m_kPa,
-    max(value) FILTER (WHERE name = 'tip_deflection_mm')       AS tip_deflection_mm,
-    max(value) FILTER (WHERE name = 'contact_onset_kPa')       AS contact_onset_kPa,
-    max(value) FILTER (WHERE name = 'cavity_volume_mm3')       AS cavity_volume_mm3,
-    max(value) FILTER (WHERE name = 'mass_g')                  AS mass_g,
-    max(value) FILTER (WHERE name = 'max_stretch')             AS max_stretch,
-    max(value) FILTER (WHERE name = 'min_gap_mm')              AS min_gap_mm
-  FROM metric GROUP BY job_id)
 SELECT job.id, job.name, job.kind, job.state, job.reason_code,
-  p.family, p.length_mm, p.width_mm, p.height_mm, p.chambers, p.chamber_gap_mm, p.side_wall_mm,
-  p.gap_wall_mm, p.top_wall_mm, p.bottom_layer_mm, p.material, p.pressure_to_kPa, p.contact,
-  p.accuracy,
-  o.bending_angle_deg, o.chord_angle_deg, o.end_face_angle_deg, o.sensitivity_deg_per_kPa,
-  o.r_squared, o.cai_rad_per_m_kPa, o.tip_deflection_mm, o.contact_onset_kPa,
-  o.cavity_volume_mm3, o.mass_g, o.max_stretch, o.min_gap_mm,
+  (SELECT text FROM design_parameter WHERE job_id = job.id
+     AND pointer = '/actuator/family') AS family,
+  (SELECT 1e3 * value FROM design_parameter WHERE job_id = job.id
+     AND pointer = '/actuator/length') AS length_mm,
+  (SELECT 1e3 * value FROM design_parameter WHERE job_id = job.id
+     AND pointer = '/actuator/width') AS width_mm,
+  (SELECT 1e3 * max(value) FROM design_parameter WHERE job_id = job.id
+     AND pointer IN ('/actuator/height', '/actuator/height/base')) AS height_mm,
+  (SELECT sum(value) FROM design_parameter WHERE job_id = job.id
+     AND pointer GLOB '/actuator/chambers/[0-9]*/count') AS chambers,
+  (SELECT 1e3 * value FROM design_parameter WHERE job_id = job.id
+     AND pointer = '/actuator/chamber_gap') AS chamber_gap_mm,
+  (SELECT 1e3 * value FROM design_parameter WHERE job_id = job.id
+     AND pointer = '/actuator/side_wall') AS side_wall_mm,
+  (SELECT 1e3 * value FROM design_parameter WHERE job_id = job.id
+     AND pointer = '/actuator/gap_wall') AS gap_wall_mm,
+  (SELECT 1e3 * value FROM design_parameter WHERE job_id = job.id
+     AND pointer = '/actuator/top_wall') AS top_wall_mm,
+  (SELECT 1e3 * value FROM design_parameter WHERE job_id = job.id
+     AND pointer = '/actuator/bottom_layer') AS bottom_layer_mm,
+  (SELECT max(text) FROM design_parameter WHERE job_id = job.id
+     AND pointer IN ('/material', '/material/model')) AS material,
+  (SELECT 1e-3 * value FROM design_parameter WHERE job_id = job.id
+     AND pointer = '/load/pressure/to') AS pressure_to_kPa,
+  (SELECT text FROM design_parameter WHERE job_id = job.id
+     AND pointer = '/contact') AS contact,
+  (SELECT text FROM design_parameter WHERE job_id = job.id
+     AND pointer = '/accuracy') AS accuracy,
+  (SELECT value FROM metric WHERE job_id = job.id AND name = 'bending_angle_deg')
+     AS bending_angle_deg,
+  (SELECT value FROM metric WHERE job_id = job.id AND name = 'chord_angle_deg')
+     AS chord_angle_deg,
+  (SELECT value FROM metric WHERE job_id = job.id AND name = 'end_face_angle_deg')
+     AS end_face_angle_deg,
+  (SELECT value FROM metric WHERE job_id = job.id AND name = 'sensitivity_deg_per_kPa')
+     AS sensitivity_deg_per_kPa,
+  (SELECT value FROM metric WHERE job_id = job.id AND name = 'r_squared')
+     AS r_squared,
+  (SELECT value FROM metric WHERE job_id = job.id AND name = 'cai_rad_per_m_kPa')
+     AS cai_rad_per_m_kPa,
+  (SELECT value FROM metric WHERE job_id = job.id AND name = 'tip_deflection_mm')
+     AS tip_deflection_mm,
+  (SELECT value FROM metric WHERE job_id = job.id AND name = 'contact_onset_kPa')
+     AS contact_onset_kPa,
+  (SELECT value FROM metric WHERE job_id = job.id AND name = 'cavity_volume_mm3')
+     AS cavity_volume_mm3,
+  (SELECT value FROM metric WHERE job_id = job.id AND name = 'mass_g')
+     AS mass_g,
+  (SELECT value FROM metric WHERE job_id = job.id AND name = 'max_stretch')
+     AS max_stretch,
+  (SELECT value FROM metric WHERE job_id = job.id AND name = 'min_gap_mm')
+     AS min_gap_mm,
   job.attempt AS attempts,
   (job.finished_ms - job.started_ms) / 1000.0 AS run_s,
   strftime('%Y-%m-%dT%H:%M:%SZ', job.finished_ms / 1000, 'unixepoch') AS finished,
   job.spec_hash
 FROM job
 JOIN job_state USING (state)
-LEFT JOIN parameter AS p ON p.job_id = job.id
-LEFT JOIN outcome AS o ON o.job_id = job.id
 WHERE job_state.terminal = 1;
