@@ -52,15 +52,17 @@ void contact_nodes(const struct contact *contact, int pair, int nodes[CONTACT_NO
 struct projection {
   double n[QUAD9_NODES], dn[2][QUAD9_NODES];
   double tangent[2][3];
-  double distance[3];         /* slave point - master point */
-  double c11, c12, c22;       /* Hessian of |distance|^2 / 2 in the parent coordinates */
+  double distance[3];     /* slave point - master point */
+  double curvature[3][3]; /* second derivatives of the master point: ss, tt, st */
+  double c11, c12, c22;   /* Hessian of |distance|^2 / 2 in the parent coordinates */
 };
 
-static void evaluate_projection(double master[][3], const double slave[3],
-                                const double xi[2], struct projection *p) {
-  double d2n[3][QUAD9_NODES], curvature[3][3] = {{0}};
+static void evaluate_projection(double master[][3], const double slave[3], const double xi[2],
+                                struct projection *p) {
+  double d2n[3][QUAD9_NODES];
   quad9_shape(xi[0], xi[1], p->n, p->dn, d2n);
   memset(p->tangent, 0, sizeof p->tangent);
+  memset(p->curvature, 0, sizeof p->curvature);
   memcpy(p->distance, slave, sizeof p->distance);
   for (int m = 0; m < QUAD9_NODES; m++) {
     for (int i = 0; i < 3; i++) {
@@ -68,20 +70,19 @@ static void evaluate_projection(double master[][3], const double slave[3],
       p->distance[i] -= p->n[m] * x;
       p->tangent[0][i] += p->dn[0][m] * x;
       p->tangent[1][i] += p->dn[1][m] * x;
-      curvature[0][i] += d2n[0][m] * x;
-      curvature[1][i] += d2n[1][m] * x;
-      curvature[2][i] += d2n[2][m] * x;
+      p->curvature[0][i] += d2n[0][m] * x;
+      p->curvature[1][i] += d2n[1][m] * x;
+      p->curvature[2][i] += d2n[2][m] * x;
     }
   }
   const double *a = p->tangent[0], *b = p->tangent[1], *d = p->distance;
-  p->c11 = vec3_dot(a, a) - vec3_dot(d, curvature[0]);
-  p->c22 = vec3_dot(b, b) - vec3_dot(d, curvature[1]);
-  p->c12 = vec3_dot(a, b) - vec3_dot(d, curvature[2]);
+  p->c11 = vec3_dot(a, a) - vec3_dot(d, p->curvature[0]);
+  p->c22 = vec3_dot(b, b) - vec3_dot(d, p->curvature[1]);
+  p->c12 = vec3_dot(a, b) - vec3_dot(d, p->curvature[2]);
 }
 
 /* Newton iteration for the closest point, started at xi. False when it leaves the face. */
-static bool project(double master[][3], const double slave[3], double xi[2],
-                    struct projection *p) {
+static bool project(double master[][3], const double slave[3], double xi[2], struct projection *p) {
   for (int iteration = 0; iteration < 12; iteration++) {
     evaluate_projection(master, slave, xi, p);
     double determinant = p->c11 * p->c22 - p->c12 * p->c12;
@@ -115,47 +116,56 @@ static double contact_law(const struct contact *contact, double lambda, double g
   return eps * (delta - x) * (delta - x) / (4 * delta);
 }
 
-/* Adds area * Hessian of the potential e(g), e' = -t, e'' = slope. With D the distance vector,
- * c the coefficients of the nodes in D and B_alpha = d(D . x,alpha)/du:
- *   Hess(g^2/2) = c c I - B C^-1 B^T;  Hess e = e'/g Hess(g^2/2) + (e'' - e'/g) n n^T. */
+/* Adds the Hessian e'' n n^T + e' Hess g of the potential e(g), e' = first, e'' = second. With
+ * t_a = c x,a (c the nodes' coefficients in the distance), m_a = n N,a on the master nodes, the
+ * metric A, the curvature K = n . x,ab and C = A - g K:
+ *   Hess g = - t M t^T - t C^-1 m^T - m C^-1 t^T - g m C^-1 m^T,  M = A^-1 K C^-1.
+ * Nothing is divided by g, which the multipliers drive to zero. */
 static void add_tangent(const struct projection *p, const double c[CONTACT_NODES],
                         const double normal[3], double gap, double first, double second,
                         double *packed) {
-  double scale = fmax(sqrt(p->c11), sqrt(p->c22));
-  double safe = fabs(gap) < 1e-7 * scale ? copysign(1e-7 * scale, gap) : gap;
-  double w1 = first / safe, w2 = second - w1;
-  double determinant = p->c11 * p->c22 - p->c12 * p->c12;
-  double b[2][CONTACT_DOFS], y[2][CONTACT_DOFS], n[CONTACT_DOFS];
-  for (int a = 0; a < CONTACT_NODES; a++) {
-    for (int i = 0; i < 3; i++) {
-      int r = 3 * a + i;
-      double d1 = a < QUAD9_NODES ? 0 : p->dn[0][a - QUAD9_NODES];
-      double d2 = a < QUAD9_NODES ? 0 : p->dn[1][a - QUAD9_NODES];
-      b[0][r] = -c[a] * p->tangent[0][i] - p->distance[i] * d1;
-      b[1][r] = -c[a] * p->tangent[1][i] - p->distance[i] * d2;
-      y[0][r] = w1 * (p->c22 * b[0][r] - p->c12 * b[1][r]) / determinant;
-      y[1][r] = w1 * (p->c11 * b[1][r] - p->c12 * b[0][r]) / determinant;
-      n[r] = c[a] * normal[i];
+  const double *x1 = p->tangent[0], *x2 = p->tangent[1];
+  double a11 = vec3_dot(x1, x1), a12 = vec3_dot(x1, x2), a22 = vec3_dot(x2, x2);
+  double k11 = vec3_dot(normal, p->curvature[0]), k22 = vec3_dot(normal, p->curvature[1]),
+         k12 = vec3_dot(normal, p->curvature[2]);
+  double metric = a11 * a22 - a12 * a12, determinant = p->c11 * p->c22 - p->c12 * p->c12;
+  double i11 = p->c22 / determinant, i12 = -p->c12 / determinant, i22 = p->c11 / determinant;
+  double ak[2][2] = {{(a22 * k11 - a12 * k12) / metric, (a22 * k12 - a12 * k22) / metric},
+                     {(a11 * k12 - a12 * k11) / metric, (a11 * k22 - a12 * k12) / metric}};
+  double m11 = ak[0][0] * i11 + ak[0][1] * i12, m12 = ak[0][0] * i12 + ak[0][1] * i22,
+         m22 = ak[1][0] * i12 + ak[1][1] * i22;
+  /* The sum of left[v] right[v]^T over v. */
+  double left[5][CONTACT_DOFS], right[5][CONTACT_DOFS];
+  for (int r = 0; r < CONTACT_DOFS; r++) {
+    int a = r / 3, i = r % 3;
+    double t1 = c[a] * x1[i], t2 = c[a] * x2[i], n = c[a] * normal[i];
+    double n1 = a < QUAD9_NODES ? 0 : normal[i] * p->dn[0][a - QUAD9_NODES];
+    double n2 = a < QUAD9_NODES ? 0 : normal[i] * p->dn[1][a - QUAD9_NODES];
+    double s1 = t1 + gap * n1, s2 = t2 + gap * n2;
+    double l[5] = {t1, t2, n1, n2, n};
+    double q[5] = {-first * (m11 * t1 + m12 * t2 + i11 * n1 + i12 * n2),
+                   -first * (m12 * t1 + m22 * t2 + i12 * n1 + i22 * n2),
+                   -first * (i11 * s1 + i12 * s2), -first * (i12 * s1 + i22 * s2), second * n};
+    for (int v = 0; v < 5; v++) {
+      left[v][r] = l[v];
+      right[v][r] = q[v];
     }
   }
   for (int r = 0; r < CONTACT_DOFS; r++) {
     double *restrict row = packed - r;
-    double y0 = y[0][r], y1 = y[1][r], nr = w2 * n[r], cr = w1 * c[r / 3];
+    double l0 = left[0][r], l1 = left[1][r], l2 = left[2][r], l3 = left[3][r], l4 = left[4][r];
 #pragma omp simd
     for (int s = r; s < CONTACT_DOFS; s++) {
-      row[s] += nr * n[s] - y0 * b[0][s] - y1 * b[1][s];
-    }
-    for (int s = r; s < CONTACT_DOFS; s += 3) {
-      row[s] += cr * c[s / 3];
+      row[s] += l0 * right[0][s] + l1 * right[1][s] + l2 * right[2][s] + l3 * right[3][s] +
+                l4 * right[4][s];
     }
     packed += CONTACT_DOFS - r;
   }
 }
 
 /* Slave point and projection of Gauss point q; fills gap, outward master normal, validity. */
-static void find_gap(const struct contact *contact, int pair, int q,
-                     double x[CONTACT_NODES][3], struct projection *p,
-                     struct contact_point *point, double normal[3]) {
+static void find_gap(const struct contact *contact, int pair, int q, double x[CONTACT_NODES][3],
+                     struct projection *p, struct contact_point *point, double normal[3]) {
   const double *n = contact->tables->n[q];
   double slave[3] = {0};
   for (int m = 0; m < QUAD9_NODES; m++) {
