@@ -85,7 +85,9 @@ void body_hold(struct mesh *mesh, int axis, double at, int components) {
     const double *x = mesh->x + 3 * n;
     if (axis < 0 || fabs(x[axis] - at) < 1e-9 * (1e-3 + fabs(at))) {
       for (int i = 0; i < 3; i++) {
-        mesh->fixed[3 * n + i] |= (components >> i) & 1;
+        if ((components >> i) & 1) {
+          mesh->fixed[3 * n + i] = 1;
+        }
       }
     }
   }

@@ -306,7 +306,7 @@ int main(void) {
   Suite *suite = suite_create("bending");
   TCase *bending = tcase_create("bending");
   tcase_set_timeout(bending, 300);
-  tcase_add_loop_test(bending, reference_body, 0, SANITIZED ? 1 : 2);
+  tcase_add_loop_test(bending, reference_body, 0, 2);
   tcase_add_test(bending, no_load_no_motion);
   tcase_add_test(bending, full_model_equals_half_model);
   tcase_add_test(bending, unequal_tapers_turn_sideways);

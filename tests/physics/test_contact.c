@@ -125,7 +125,9 @@ static const struct regime {
     {"contact, multiplier across a gap", 0.08, 3, 0.05, -INFINITY, -1, 1e-7},
     {"contact, multiplier, smoothed", 0.11, 1, 0.05, -1, 1, 1e-7},
     {"contact, flat faces", -0.12, 0, 0, -INFINITY, -1, 1e-7},
-    {"contact, multiplier on touching faces", 1e-5, 3, 0.02, -INFINITY, -1, 1e-6},
+    {"contact, multiplier on touching faces", 1e-5, 3, 0.02, -INFINITY, -1, 1e-7},
+    {"contact, multiplier on closed faces", 1e-10, 3, 0, -INFINITY, -1, 1e-7},
+    {"contact, multiplier, hardly penetrating", -1e-9, 3, 0, -INFINITY, -1, 1e-7},
 };
 enum { REGIMES = sizeof regimes / sizeof *regimes };
 
@@ -196,8 +198,8 @@ START_TEST(uniform_pressure_is_transmitted) {
   ck_assert_int_eq(equilibrium_create(model, &solver, NULL), STATUS_OK);
   ck_assert_int_eq(state_create(model, &state), STATUS_OK);
   body_add_traction(model, 0, 2 + gap, (double[3]){-traction, 0, 0});
-  solver->options.traction_tolerance = 1e-9;
-  solver->options.step_tolerance = 1e-11;
+  solver->options.traction_tolerance = 1e-8;
+  solver->options.step_tolerance = 1e-9;
   struct fe_load load = {0, 0, 1};
   int iterations;
   ck_assert_int_eq(equilibrium_solve(solver, &load, 0, &state, &iterations), STATUS_OK);
