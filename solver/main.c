@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include "solver/run.h"
 
 enum exit_code {
@@ -17,7 +18,6 @@ enum exit_code {
   EXIT_CANCELLED = 5
 };
 
-/* One byte more than a job may have, so that an oversized one is recognised, not cut. */
 enum { JOB_BYTES_MAX = 1 << 20 };
 
 static volatile sig_atomic_t cancel_requested;
@@ -36,7 +36,7 @@ static const char usage[] =
     "usage: pneulab-solve [--out DIR] [--events FILE] [--threads N] [--deck FILE] [--verbose] "
     "JOB.json\n"
     "  JOB.json        job document; - reads standard input\n"
-    "  --out DIR       write surface.json and surface.vtu there\n"
+    "  --out DIR       write surface.json and surface.vtu there; made when missing\n"
     "  --events FILE   append progress as JSON lines\n"
     "  --threads N     threads of the dense linear algebra (default 1)\n"
     "  --deck FILE     write the problem as a CalculiX deck instead of solving it\n"
@@ -88,7 +88,8 @@ static bool parse_arguments(int argc, char **argv, struct arguments *a) {
   return a->job && a->threads >= 1 && a->threads <= 256;
 }
 
-/* Reads the job's text; *size may exceed JOB_BYTES_MAX by one. The caller frees the result. */
+/* Reads the job's text. One byte more than a job may have is read, so that an oversized one is
+ * recognised, not cut. The caller frees the result. */
 static char *read_job(const char *path, size_t *size, struct error *error) {
   FILE *file = strcmp(path, "-") == 0 ? stdin : fopen(path, "r");
   char *text = malloc(JOB_BYTES_MAX + 1);
@@ -108,6 +109,23 @@ static char *read_job(const char *path, size_t *size, struct error *error) {
     fclose(file);
   }
   return text;
+}
+
+/* Makes the directory of the artifacts unless it is there. */
+static enum status make_directory(const char *path, struct error *error) {
+  if (!path || mkdir(path, 0777) == 0 || errno == EEXIST) {
+    return STATUS_OK;
+  }
+  return error_set(error, STATUS_IO, NULL, "cannot make the directory %s: %s", path,
+                   strerror(errno));
+}
+
+static enum status open_events(const char *path, FILE **events, struct error *error) {
+  *events = path ? fopen(path, "a") : NULL;
+  if (path && !*events) {
+    return error_set(error, STATUS_IO, NULL, "cannot write %s: %s", path, strerror(errno));
+  }
+  return STATUS_OK;
 }
 
 static void print_document(json_t *document) {
@@ -148,8 +166,8 @@ int main(int argc, char **argv) {
     return report(&error);
   }
   free(text);
-  if (a.events && !(a.run.events = fopen(a.events, "a"))) {
-    error_set(&error, STATUS_IO, NULL, "cannot write %s: %s", a.events, strerror(errno));
+  if (make_directory(a.run.out_dir, &error) != STATUS_OK ||
+      open_events(a.events, &a.run.events, &error) != STATUS_OK) {
     return report(&error);
   }
   json_t *document = NULL;

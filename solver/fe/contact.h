@@ -36,8 +36,8 @@ struct contact {
 
 /* Summary of one evaluation over all pairs. */
 struct contact_summary {
-  double min_gap;  /* m, +infinity without a valid point */
-  int active;      /* points with traction */
+  double min_gap; /* m, +infinity without a valid point */
+  int active;     /* points with traction */
 };
 
 /* tables and mesh must outlive the contact. On failure STATUS_NO_MEMORY. */

@@ -62,8 +62,8 @@ static double dot(const double *restrict a, const double *restrict b) {
   return sum;
 }
 
-void element_gradient(const struct element_geometry *geometry, int q,
-                      double u[3][HEX27_STRIDE], double f[9]) {
+void element_gradient(const struct element_geometry *geometry, int q, double u[3][HEX27_STRIDE],
+                      double f[9]) {
   for (int i = 0; i < 3; i++) {
     for (int j = 0; j < 3; j++) {
       f[3 * i + j] = (i == j) + dot(u[i], geometry->gradient[q][j]);
@@ -74,13 +74,12 @@ void element_gradient(const struct element_geometry *geometry, int q,
 /* Residual and pressure rows of one Gauss point. */
 struct point_state {
   struct kinematics k;
-  double stress[9];      /* weighted total first Piola-Kirchhoff stress */
-  double tangent[81];    /* weighted */
+  double stress[9];   /* weighted total first Piola-Kirchhoff stress */
+  double tangent[81]; /* weighted */
 };
 
 /* out[a] += b[0] D[0][a] + b[1] D[1][a] + b[2] D[2][a] */
-static void add_rows(const double b[3], const double d[3][HEX27_STRIDE],
-                     double *restrict out) {
+static void add_rows(const double b[3], const double d[3][HEX27_STRIDE], double *restrict out) {
 #pragma omp simd
   for (int a = 0; a < HEX27_NODES; a++) {
     out[a] += b[0] * d[0][a] + b[1] * d[1][a] + b[2] * d[2][a];
@@ -182,10 +181,10 @@ static void assemble_packed(const struct element_geometry *geometry,
   }
 }
 
-bool element_evaluate(const struct element_geometry *geometry,
-                      const struct material_spec *material, double bulk_modulus,
-                      double u[3][HEX27_STRIDE], const double p[ELEMENT_PRESSURES],
-                      struct element_work *work, double residual[ELEMENT_DOFS], double *packed,
+bool element_evaluate(const struct element_geometry *geometry, const struct material_spec *material,
+                      double bulk_modulus, double u[3][HEX27_STRIDE],
+                      const double p[ELEMENT_PRESSURES], struct element_work *work,
+                      double residual[ELEMENT_DOFS], double *packed,
                       struct element_internal *internal) {
   double pressure_block[ELEMENT_PRESSURES][ELEMENT_PRESSURES] = {{0}};
   memset(residual, 0, ELEMENT_DOFS * sizeof *residual);
@@ -243,8 +242,8 @@ void element_recover(const struct element_internal *internal, const double du[EL
                      double share, double dp[ELEMENT_PRESSURES]) {
   double r[ELEMENT_PRESSURES];
   for (int m = 0; m < ELEMENT_PRESSURES; m++) {
-    r[m] = share * internal->residual[m] +
-           cblas_ddot(ELEMENT_DOFS, internal->coupling[m], 1, du, 1);
+    r[m] =
+        share * internal->residual[m] + cblas_ddot(ELEMENT_DOFS, internal->coupling[m], 1, du, 1);
   }
   for (int m = 0; m < ELEMENT_PRESSURES; m++) {
     dp[m] = -cblas_ddot(ELEMENT_PRESSURES, internal->inverse[m], 1, r, 1);

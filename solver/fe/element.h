@@ -11,23 +11,23 @@
 #include "solver/fe/hyperelastic.h"
 
 enum {
-  ELEMENT_DOFS = 3 * HEX27_NODES,                          /* 81, index 27 i + a */
-  ELEMENT_PRESSURES = 4,                                   /* 1, x, y, z */
-  ELEMENT_PACKED = ELEMENT_DOFS * (ELEMENT_DOFS + 1) / 2   /* upper triangle by rows */
+  ELEMENT_DOFS = 3 * HEX27_NODES,                        /* 81, index 27 i + a */
+  ELEMENT_PRESSURES = 4,                                 /* 1, x, y, z */
+  ELEMENT_PACKED = ELEMENT_DOFS * (ELEMENT_DOFS + 1) / 2 /* upper triangle by rows */
 };
 
 /* Reference geometry at the Gauss points. */
 struct element_geometry {
-  double gradient[HEX27_POINTS][3][HEX27_STRIDE];    /* dN_a/dX_J, 1/m */
-  double weight[HEX27_POINTS];                       /* m3 */
-  double phi[HEX27_POINTS][ELEMENT_PRESSURES];       /* pressure basis */
+  double gradient[HEX27_POINTS][3][HEX27_STRIDE]; /* dN_a/dX_J, 1/m */
+  double weight[HEX27_POINTS];                    /* m3 */
+  double phi[HEX27_POINTS][ELEMENT_PRESSURES];    /* pressure basis */
 };
 
 /* What the recovery of the pressures needs from the last evaluation. */
 struct element_internal {
-  double coupling[ELEMENT_PRESSURES][ELEMENT_DOFS]; /* d r_m / d u */
+  double coupling[ELEMENT_PRESSURES][ELEMENT_DOFS];     /* d r_m / d u */
   double inverse[ELEMENT_PRESSURES][ELEMENT_PRESSURES]; /* (d r_m / d p_n)^-1 */
-  double residual[ELEMENT_PRESSURES];               /* r_m */
+  double residual[ELEMENT_PRESSURES];                   /* r_m */
 };
 
 /* Scratch of element_evaluate, reused from element to element. */
@@ -46,10 +46,10 @@ double element_geometry_fill(const struct hex27_tables *tables, double x[HEX27_N
  * p[4] in Pa. `internal` is renewed: all of it with the tangent, else only the residual part,
  * the rest being that of the last tangent, which the condensation then uses.
  * Returns false when det F <= 0.02 at a Gauss point: nothing is then valid. */
-bool element_evaluate(const struct element_geometry *geometry,
-                      const struct material_spec *material, double bulk_modulus,
-                      double u[3][HEX27_STRIDE], const double p[ELEMENT_PRESSURES],
-                      struct element_work *work, double residual[ELEMENT_DOFS], double *packed,
+bool element_evaluate(const struct element_geometry *geometry, const struct material_spec *material,
+                      double bulk_modulus, double u[3][HEX27_STRIDE],
+                      const double p[ELEMENT_PRESSURES], struct element_work *work,
+                      double residual[ELEMENT_DOFS], double *packed,
                       struct element_internal *internal);
 
 /* Change of the pressures that belongs to the displacement step du[81]:
@@ -58,7 +58,7 @@ void element_recover(const struct element_internal *internal, const double du[EL
                      double share, double dp[ELEMENT_PRESSURES]);
 
 /* Deformation gradient at Gauss point q. */
-void element_gradient(const struct element_geometry *geometry, int q,
-                      double u[3][HEX27_STRIDE], double f[9]);
+void element_gradient(const struct element_geometry *geometry, int q, double u[3][HEX27_STRIDE],
+                      double f[9]);
 
 #endif

@@ -80,8 +80,7 @@ static double largest(const struct equilibrium *s, const double *v) {
 }
 
 /* state <- state (+) (-share * correction), pressures recovered alongside. */
-static void apply(struct equilibrium *s, struct fe_state *state, double *correction,
-                  double share) {
+static void apply(struct equilibrium *s, struct fe_state *state, double *correction, double share) {
   struct fe_model *m = s->model;
   for (int d = 0; d < 3 * m->mesh->node_count; d++) {
     int equation = m->equation[d];

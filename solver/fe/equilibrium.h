@@ -8,11 +8,11 @@
 
 /* Length scales and limits, filled by equilibrium_create from the mesh; open to the caller. */
 struct equilibrium_options {
-  double longest_step;   /* largest nodal increment of one iteration, m */
-  double step_tolerance; /* root mean square of the last correction, m */
+  double longest_step;       /* largest nodal increment of one iteration, m */
+  double step_tolerance;     /* root mean square of the last correction, m */
   double traction_tolerance; /* largest change of a contact multiplier at the end, Pa */
   int max_iterations;
-  double deadline_s;     /* on clock_wall_s; 0: none */
+  double deadline_s;                /* on clock_wall_s; 0: none */
   bool (*cancelled)(void *context); /* may be NULL */
   void *cancel_context;
 };
@@ -21,13 +21,13 @@ struct equilibrium {
   struct fe_model *model;
   struct retraction *retraction;
   struct equilibrium_options options;
-  struct fe_state saved;   /* before the increment that is being tried */
-  double *step;            /* dof_count */
-  double *chord;           /* dof_count */
-  double *increment;       /* node_count x 3 */
-  int negative_pivots;     /* of the last factorisation */
-  double last_correction;  /* rms of the last correction, m */
-  int verbose;             /* 1: a line an iteration on standard error */
+  struct fe_state saved;  /* before the increment that is being tried */
+  double *step;           /* dof_count */
+  double *chord;          /* dof_count */
+  double *increment;      /* node_count x 3 */
+  int negative_pivots;    /* of the last factorisation */
+  double last_correction; /* rms of the last correction, m */
+  int verbose;            /* 1: a line an iteration on standard error */
 };
 
 enum status equilibrium_create(struct fe_model *model, struct equilibrium **out,

@@ -35,8 +35,7 @@ static void add_first_invariant(double w1, double w2, double c, double i1, const
       double fg = w1 * 4 / 3 * c * f[3 * i + j];
       for (int k = 0; k < 3; k++) {
         for (int l = 0; l < 3; l++) {
-          row[3 * k + l] +=
-              fs * s[3 * k + l] - fg * g[3 * k + l] + h * g[3 * k + j] * g[3 * i + l];
+          row[3 * k + l] += fs * s[3 * k + l] - fg * g[3 * k + l] + h * g[3 * k + j] * g[3 * i + l];
         }
       }
       row[3 * i + j] += w1 * 2 * c;
@@ -104,9 +103,9 @@ static double add_second_invariant(double w, const struct kinematics *k, double 
       second += i == n ? -2 * cg[3 * l + j] : 0;
       second += j == l ? -2 * b[3 * i + n] : 0;
       second += p == q ? 2 * i1 : 0;
-      tangent[9 * p + q] += w * (a * second - 4.0 / 3 * (m[p] * g[q] + g[p] * m[q]) +
-                                 16.0 / 9 * i2 * g[p] * g[q] +
-                                 4.0 / 3 * i2 * g[3 * n + j] * g[3 * i + l]);
+      tangent[9 * p + q] +=
+          w * (a * second - 4.0 / 3 * (m[p] * g[q] + g[p] * m[q]) + 16.0 / 9 * i2 * g[p] * g[q] +
+               4.0 / 3 * i2 * g[3 * n + j] * g[3 * i + l]);
     }
   }
   return w * (i2 - 3);
@@ -232,8 +231,9 @@ static double ogden_law(const struct material_spec *material, const struct kinem
         double cross = a != b ? shear * fv[3 * i + a] * v[3 * j + b] : 0;
         for (int q = 0; q < 9; q++) {
           int n = q / 3, l = q % 3;
-          tangent[9 * p + q] += normal * fv[3 * n + b] * v[3 * l + b] +
-                                cross * (fv[3 * n + a] * v[3 * l + b] + fv[3 * n + b] * v[3 * l + a]);
+          tangent[9 * p + q] +=
+              normal * fv[3 * n + b] * v[3 * l + b] +
+              cross * (fv[3 * n + a] * v[3 * l + b] + fv[3 * n + b] * v[3 * l + a]);
         }
       }
     }

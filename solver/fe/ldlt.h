@@ -2,8 +2,8 @@
  * is a sum of dense cliques (element and contact matrices); S is a diagonal of signs, so that
  * the inertia is known. No pivoting: the tangent of an elastic body is definite or close to it.
  *
- * The ordering (AMD or METIS) and the supernodal elimination tree come from SuiteSparse, on the graph of
- * nodes; the method is that of Duff and Reid (1983). */
+ * The ordering (AMD or METIS) and the supernodal elimination tree come from SuiteSparse, on the
+ * graph of nodes; the method is that of Duff and Reid (1983). */
 #ifndef PNEULAB_FE_LDLT_H
 #define PNEULAB_FE_LDLT_H
 
@@ -31,8 +31,7 @@ struct ldlt_statistics {
 };
 
 /* Orders and analyses. The pattern is copied. On success the caller owns *out (ldlt_destroy). */
-enum status ldlt_create(const struct ldlt_pattern *pattern, struct ldlt **out,
-                        struct error *error);
+enum status ldlt_create(const struct ldlt_pattern *pattern, struct ldlt **out, struct error *error);
 void ldlt_destroy(struct ldlt *ldlt);
 
 /* Factorises the sum of the cliques. values[c] is the upper triangle by rows of clique c in the

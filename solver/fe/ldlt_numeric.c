@@ -96,16 +96,15 @@ static void rank_update(int height, int columns, const double *l, size_t lead, c
 }
 
 /* The same for the rectangle below the triangle: target (height x width) -= L2 S L1^T. */
-static void rectangle_update(int height, int width, int columns, const double *l1,
-                             const double *l2, size_t lead, const double *sign, int negative,
-                             double *target) {
+static void rectangle_update(int height, int width, int columns, const double *l1, const double *l2,
+                             size_t lead, const double *sign, int negative, double *target) {
   int ld = (int)lead;
   cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, height, width, columns, -1, l2, ld, l1, ld,
               1, target, ld);
   for (int j = 0; negative > 0 && j < columns; j++) {
     if (sign[j] < 0) {
-      cblas_dger(CblasColMajor, height, width, 2, l2 + (size_t)j * lead, 1,
-                 l1 + (size_t)j * lead, 1, target, ld);
+      cblas_dger(CblasColMajor, height, width, 2, l2 + (size_t)j * lead, 1, l1 + (size_t)j * lead,
+                 1, target, ld);
     }
   }
 }

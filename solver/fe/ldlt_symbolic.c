@@ -10,11 +10,11 @@ struct analysis {
   cholmod_common common;
   cholmod_factor *symbolic;
   int active_count;
-  int *active;     /* node -> active index or -1 */
-  int *dof_start;  /* active_count + 1, into dof_list: unknowns of each active node */
+  int *active;    /* node -> active index or -1 */
+  int *dof_start; /* active_count + 1, into dof_list: unknowns of each active node */
   int *dof_list;
-  int *column;     /* active_count + 1: first column of each node in elimination order */
-  int *front_of;   /* column -> front */
+  int *column;   /* active_count + 1: first column of each node in elimination order */
+  int *front_of; /* column -> front */
 };
 
 static enum status collect_nodes(struct analysis *a) {

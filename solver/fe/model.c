@@ -13,8 +13,7 @@ static enum status fill_geometry(struct fe_model *m, struct error *error) {
     double volume = element_geometry_fill(&m->hex27, x, &m->geometry[e]);
     if (!(volume > 0)) {
       return error_set(error, STATUS_GEOMETRY, "/actuator",
-                       "the undeformed body folds over itself near x = %.4g mm",
-                       1e3 * x[13][0]);
+                       "the undeformed body folds over itself near x = %.4g mm", 1e3 * x[13][0]);
     }
     m->reference_volume += volume;
   }
@@ -121,8 +120,8 @@ enum status model_create(const struct mesh *mesh, const struct material_spec *ma
   quad9_tables_fill(&m->quad9);
   enum status status = contact_init(&m->contact, mesh, &m->quad9, error);
   if (status == STATUS_OK && !allocate(m)) {
-    status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for %d elements",
-                       mesh->element_count);
+    status =
+        error_set(error, STATUS_NO_MEMORY, NULL, "no memory for %d elements", mesh->element_count);
   }
   if (status == STATUS_OK) {
     /* Soft against the walls, so that a step into contact does not rebound; the multipliers
@@ -184,8 +183,7 @@ void model_add_gravity(struct fe_model *m, const double gravity[3]) {
 enum status state_create(const struct fe_model *m, struct fe_state *state) {
   state->u = calloc(3 * (size_t)m->mesh->node_count, sizeof *state->u);
   state->p = calloc(ELEMENT_PRESSURES * (size_t)m->mesh->element_count, sizeof *state->p);
-  state->lambda =
-      calloc((size_t)m->contact.pair_count * QUAD9_POINTS + 1, sizeof *state->lambda);
+  state->lambda = calloc((size_t)m->contact.pair_count * QUAD9_POINTS + 1, sizeof *state->lambda);
   if (!state->u || !state->p || !state->lambda) {
     state_release(state);
     return STATUS_NO_MEMORY;

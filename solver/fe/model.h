@@ -39,11 +39,11 @@ struct fe_model {
   struct mesh_face *cavity_face;
   double *dead_load; /* node_count x 3, N at factor 1; the caller may add to it */
   int dof_count;
-  int *equation; /* node_count x 3, -1 where held */
-  int *node_of;  /* dof_count */
-  double *residual;         /* dof_count, N */
-  double *element_value;    /* packed tangents */
-  double *contact_value;    /* packed tangents */
+  int *equation;         /* node_count x 3, -1 where held */
+  int *node_of;          /* dof_count */
+  double *residual;      /* dof_count, N */
+  double *element_value; /* packed tangents */
+  double *contact_value; /* packed tangents */
   const double **clique_value;
   bool use_contact;
   struct contact contact;

@@ -10,10 +10,10 @@ enum { EASY_ITERATIONS = 6, SMALLEST_PART = 500 };
 
 /* The load parameter runs over [0, 1] for the dead load and then over the pressure. */
 struct stage {
-  bool dead;       /* this stage ramps the dead load */
-  double end;      /* final value of the parameter */
-  int records;     /* recorded at k/records end, k = 1 .. records */
-  double full;     /* largest step */
+  bool dead;   /* this stage ramps the dead load */
+  double end;  /* final value of the parameter */
+  int records; /* recorded at k/records end, k = 1 .. records */
+  double full; /* largest step */
 };
 
 struct walk {
@@ -21,16 +21,15 @@ struct walk {
   const struct path_options *options;
   struct fe_state *state; /* last converged */
   struct fe_state trial;
-  double value;           /* converged parameter of the stage */
+  double value; /* converged parameter of the stage */
   double step;
-  int iterations;         /* since the last recorded state */
-  enum status failure;    /* of the last attempt */
+  int iterations;      /* since the last recorded state */
+  enum status failure; /* of the last attempt */
 };
 
 static struct fe_load stage_load(const struct walk *w, const struct stage *stage, double value) {
   bool dead = w->options->dead_load;
-  return stage->dead ? (struct fe_load){0, 0, value}
-                     : (struct fe_load){value, value, dead ? 1 : 0};
+  return stage->dead ? (struct fe_load){0, 0, value} : (struct fe_load){value, value, dead ? 1 : 0};
 }
 
 static enum status visit(struct walk *w, const struct stage *stage, bool recorded) {

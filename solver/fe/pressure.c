@@ -16,8 +16,8 @@ static void face_point(const struct quad9_tables *tables, double x[QUAD9_NODES][
   }
 }
 
-double pressure_face(const struct quad9_tables *tables, double x[QUAD9_NODES][3],
-                     int side, double force[FACE_DOFS]) {
+double pressure_face(const struct quad9_tables *tables, double x[QUAD9_NODES][3], int side,
+                     double force[FACE_DOFS]) {
   double volume = 0;
   memset(force, 0, FACE_DOFS * sizeof *force);
   for (int q = 0; q < QUAD9_POINTS; q++) {
@@ -35,8 +35,8 @@ double pressure_face(const struct quad9_tables *tables, double x[QUAD9_NODES][3]
   return volume;
 }
 
-void pressure_face_tangent(const struct quad9_tables *tables, double x[QUAD9_NODES][3],
-                           int side, double tangent[FACE_DOFS * FACE_DOFS]) {
+void pressure_face_tangent(const struct quad9_tables *tables, double x[QUAD9_NODES][3], int side,
+                           double tangent[FACE_DOFS * FACE_DOFS]) {
   memset(tangent, 0, FACE_DOFS * FACE_DOFS * sizeof *tangent);
   for (int q = 0; q < QUAD9_POINTS; q++) {
     double position[3], a[3], b[3];

@@ -16,9 +16,9 @@ struct section {
 struct retraction {
   const struct mesh *mesh;
   struct section *section;
-  int *core_count;      /* core nodes per section */
-  double *inertia;      /* 9 per section */
-  double *moment;       /* 3 per section */
+  int *core_count; /* core nodes per section */
+  double *inertia; /* 9 per section */
+  double *moment;  /* 3 per section */
 };
 
 struct retraction *retraction_create(const struct mesh *mesh) {

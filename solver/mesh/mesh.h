@@ -26,22 +26,22 @@ struct mesh_facing {
 
 struct mesh {
   int node_count, element_count;
-  double *x;                 /* node_count x 3, m */
-  int *element_nodes;        /* element_count x 27 */
-  unsigned char *fixed;      /* node_count x 3: 1 where the displacement is held at zero */
-  struct mesh_face *faces;   /* boundary faces of every kind */
+  double *x;               /* node_count x 3, m */
+  int *element_nodes;      /* element_count x 27 */
+  unsigned char *fixed;    /* node_count x 3: 1 where the displacement is held at zero */
+  struct mesh_face *faces; /* boundary faces of every kind */
   int face_count;
   struct mesh_facing *facing;
   int facing_count;
-  double gap_width;          /* narrowest gap between facing faces, m; 0 without facing */
-  double wall_thickness;     /* thinnest wall, m: scale of the contact stiffness and tolerances */
-  bool half;                 /* the other half is the mirror image about y = 0 */
+  double gap_width;      /* narrowest gap between facing faces, m; 0 without facing */
+  double wall_thickness; /* thinnest wall, m: scale of the contact stiffness and tolerances */
+  bool half;             /* the other half is the mirror image about y = 0 */
   /* Axial sections, ordered from the fixed base; section_count is 0 for a body without them. */
   int section_count;
-  int *node_section;         /* node_count */
-  unsigned char *node_core;  /* node_count: 1 for nodes of the bottom layer, which carry the frame */
-  int *centreline;           /* section_count: node of the bottom centreline */
-  int *station;              /* station_count section indices: start of each chamber, then the tip */
+  int *node_section;        /* node_count */
+  unsigned char *node_core; /* node_count: 1 for nodes of the bottom layer, which carry the frame */
+  int *centreline;          /* section_count: node of the bottom centreline */
+  int *station;             /* station_count section indices: start of each chamber, then the tip */
   int station_count;
 };
 

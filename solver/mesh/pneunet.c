@@ -192,8 +192,8 @@ static enum status axial_lines(const struct pneunet_spec *p, const struct mesh_s
 }
 
 /* Lines across the body: from 0 for a half model, mirrored about 0 otherwise. */
-static enum status lateral_lines(const struct pneunet_spec *p, const struct mesh_spec *n,
-                                 bool half, bool detached, struct grid_axis *axis) {
+static enum status lateral_lines(const struct pneunet_spec *p, const struct mesh_spec *n, bool half,
+                                 bool detached, struct grid_axis *axis) {
   struct stretch list[4];
   int count = 0;
   if (p->has_channel) {

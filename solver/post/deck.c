@@ -8,8 +8,8 @@
 
 /* Local nodes of the 27-node element in the order of the 20-node one: corners of the face
  * z = -1, of z = +1, then edge middles below, above and upright. Index 9 i + 3 j + k. */
-static const int serendipity[20] = {0, 18, 24, 6,  2,  20, 26, 8,  9,  21,
-                                    15, 3, 11, 23, 17, 5,  1,  19, 25, 7};
+static const int serendipity[20] = {0,  18, 24, 6,  2,  20, 26, 8,  9,  21,
+                                    15, 3,  11, 23, 17, 5,  1,  19, 25, 7};
 
 /* Face number of the deck for (axis, side). */
 static int deck_face(const struct mesh_face *face) {

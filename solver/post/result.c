@@ -17,8 +17,8 @@ struct result *result_create(const struct job_spec *spec, struct fe_model *model
   r->sample = calloc((size_t)spec->load.steps + 1, sizeof *r->sample);
   r->midlines = json_array();
   r->artifacts = json_array();
-  if (!r->sample || !r->midlines || !r->artifacts ||
-      state_create(model, &r->first) != STATUS_OK || state_create(model, &r->last) != STATUS_OK) {
+  if (!r->sample || !r->midlines || !r->artifacts || state_create(model, &r->first) != STATUS_OK ||
+      state_create(model, &r->last) != STATUS_OK) {
     result_destroy(r);
     return NULL;
   }
@@ -72,8 +72,8 @@ static json_t *midline(const struct result *r, const double *u, double pressure)
   if (x) {
     shape_midline(mesh, u, x);
     for (int s = 0; s < mesh->section_count; s++) {
-      json_array_append_new(points, json_pack("[fff]", 1e3 * x[3 * s], 1e3 * x[3 * s + 1],
-                                              1e3 * x[3 * s + 2]));
+      json_array_append_new(
+          points, json_pack("[fff]", 1e3 * x[3 * s], 1e3 * x[3 * s + 1], 1e3 * x[3 * s + 2]));
     }
   }
   free(x);
@@ -90,9 +90,8 @@ enum status result_add(struct result *r, const struct path_point *point) {
     return STATUS_OK;
   }
   struct sample *s = &r->sample[r->sample_count];
-  *s = (struct sample){.pressure = point->pressure,
-                       .min_gap = contact.min_gap,
-                       .iterations = point->iterations};
+  *s = (struct sample){
+      .pressure = point->pressure, .min_gap = contact.min_gap, .iterations = point->iterations};
   shape_measure(m->mesh, r->retraction, state->u, &s->shape);
   s->cavity_volume = model_volume(m, state, NULL) * (m->mesh->half ? 2 : 1);
   s->max_stretch = shape_stretch(m, state->u, NULL);
@@ -189,8 +188,8 @@ static json_t *fit_object(const struct result *r) {
     return json_null();
   }
   return json_pack("{s:f, s:f, s:f, s:f, s:f}", "from_kPa", 1e-3 * m->fit_from, "to_kPa",
-                   1e-3 * m->fit_to, "slope_deg_per_kPa", fit.slope, "intercept_deg",
-                   fit.intercept, "r_squared", fit.r_squared);
+                   1e-3 * m->fit_to, "slope_deg_per_kPa", fit.slope, "intercept_deg", fit.intercept,
+                   "r_squared", fit.r_squared);
 }
 
 static json_t *statistics_object(const struct result *r, double wall_s, double cpu_s) {
@@ -198,13 +197,13 @@ static json_t *statistics_object(const struct result *r, double wall_s, double c
   struct rusage usage;
   getrusage(RUSAGE_SELF, &usage);
   struct ldlt_statistics l = ldlt_statistics(r->model->ldlt);
-  return json_pack(
-      "{s:i, s:i, s:i, s:i, s:i, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "unknowns",
-      r->model->dof_count, "elements", r->model->mesh->element_count, "factorizations",
-      s->factorizations, "newton_iterations", s->newton_iterations, "solves", s->solves,
-      "gflop_per_factorization", 1e-9 * l.flops, "assembly_s", s->assembly_s, "residual_s",
-      s->residual_s, "factor_s", s->factor_s, "solve_s", s->solve_s, "contact_s", s->contact_s,
-      "wall_s", wall_s, "cpu_s", cpu_s, "peak_memory_MB", 1e-3 * 1.024 * (double)usage.ru_maxrss);
+  return json_pack("{s:i, s:i, s:i, s:i, s:i, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}",
+                   "unknowns", r->model->dof_count, "elements", r->model->mesh->element_count,
+                   "factorizations", s->factorizations, "newton_iterations", s->newton_iterations,
+                   "solves", s->solves, "gflop_per_factorization", 1e-9 * l.flops, "assembly_s",
+                   s->assembly_s, "residual_s", s->residual_s, "factor_s", s->factor_s, "solve_s",
+                   s->solve_s, "contact_s", s->contact_s, "wall_s", wall_s, "cpu_s", cpu_s,
+                   "peak_memory_MB", 1e-3 * 1.024 * (double)usage.ru_maxrss);
 }
 
 json_t *result_document(struct result *r, enum status status, const struct error *error,

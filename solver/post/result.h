@@ -20,8 +20,7 @@ enum status result_add(struct result *result, const struct path_point *point);
 
 /* Writes surface.json and surface.vtu of the first and the last recorded state into `directory`
  * and lists them as artifacts. */
-enum status result_write_fields(struct result *result, const char *directory,
-                                struct error *error);
+enum status result_write_fields(struct result *result, const char *directory, struct error *error);
 
 /* The document, a new reference; `status` and `error` tell how the path ended. wall_s and cpu_s
  * are those of the whole run. NULL when memory runs out. */

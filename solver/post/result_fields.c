@@ -46,8 +46,8 @@ static enum status write_json(struct result *r, const double *stretch_first,
     return status;
   }
   json_t *states = json_array();
-  json_array_append_new(states, skin_state(mesh, &skin, r->first.u, stretch_first,
-                                           r->sample[0].pressure));
+  json_array_append_new(states,
+                        skin_state(mesh, &skin, r->first.u, stretch_first, r->sample[0].pressure));
   if (r->sample_count > 1) {
     json_array_append_new(states, skin_state(mesh, &skin, r->last.u, stretch_last,
                                              r->sample[r->sample_count - 1].pressure));

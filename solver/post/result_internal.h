@@ -30,11 +30,10 @@ struct result {
   json_t *artifacts;
   struct open_state open[2]; /* the last two states without contact, newest first */
   int open_count;
-  double onset;       /* Pa, negative until contact */
-  double penetration; /* largest over recorded states, m */
+  double onset;                /* Pa, negative until contact */
+  double penetration;          /* largest over recorded states, m */
   struct fe_state first, last; /* recorded states */
 };
-
 
 /* Warnings of the run as a JSON array, a new reference: unstable material, stretch beyond the
  * fit, overlapping chambers. */

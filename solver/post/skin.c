@@ -96,8 +96,8 @@ json_t *skin_quads(const struct skin *skin) {
         int corner = 3 * a + b;
         int second = skin->inward[f] ? corner + 1 : corner + 3;
         int fourth = skin->inward[f] ? corner + 3 : corner + 1;
-        json_array_append_new(quads, json_pack("[iiii]", p[corner], p[second], p[corner + 4],
-                                               p[fourth]));
+        json_array_append_new(quads,
+                              json_pack("[iiii]", p[corner], p[second], p[corner + 4], p[fourth]));
       }
     }
   }

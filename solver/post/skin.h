@@ -12,8 +12,8 @@ struct skin {
   int *node;               /* node of each point */
   unsigned char *mirrored; /* 1 for a point of the mirrored half */
   int face_count;
-  int (*face)[QUAD9_NODES];        /* points of each 9-node face, order of mesh_face_nodes */
-  unsigned char *inward;           /* 1 where that order's normal points into the body */
+  int (*face)[QUAD9_NODES]; /* points of each 9-node face, order of mesh_face_nodes */
+  unsigned char *inward;    /* 1 where that order's normal points into the body */
 };
 
 /* Collects the faces of FACE_OUTER and FACE_BASE, and with `cavities` also FACE_CAVITY. On
