@@ -1,0 +1,166 @@
+/* Where the time of one solve goes, and how close the factorisation comes to the machine.
+ *   bench_solve JOB.json [repetitions]
+ * Speeds are given as shares of the dgemm rate that the same run measures on one core, so that
+ * numbers of different machines compare. */
+#include <cblas.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include "solver/base/clock.h"
+#include "solver/fe/path.h"
+#include "solver/job/spec.h"
+#include "solver/mesh/pneunet.h"
+
+enum { JOB_SIZE_MAX = 1 << 20 };
+
+/* Times and counts of one solve. */
+struct timing {
+  double wall, cpu, setup;
+  struct fe_statistics parts;
+  struct ldlt_statistics factor;
+  int unknowns, elements;
+};
+
+static bool read_job(const char *path, struct job_spec *spec) {
+  struct error error = {0};
+  bool read = false;
+  char *text = malloc(JOB_SIZE_MAX);
+  FILE *file = fopen(path, "rb");
+  if (!text || !file) {
+    perror(path);
+    goto done;
+  }
+  size_t size = fread(text, 1, JOB_SIZE_MAX, file);
+  read = job_spec_read(text, size, spec, &error) == STATUS_OK;
+  if (!read) {
+    fprintf(stderr, "%s: %s\n", path, error.message);
+  }
+done:
+  if (file) {
+    fclose(file);
+  }
+  free(text);
+  return read;
+}
+
+/* Best rate of several products of 640 x 640 matrices, flop/s. */
+static double dgemm_rate(void) {
+  const int n = 640;
+  const size_t size = (size_t)n * (size_t)n;
+  double *a = malloc(3 * size * sizeof *a), best = INFINITY;
+  if (!a) {
+    return NAN;
+  }
+  for (size_t i = 0; i < 3 * size; i++) {
+    a[i] = 1 / (1.0 + (double)i);
+  }
+  for (int k = 0; k < 12; k++) {
+    double start = clock_cpu_s();
+    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, n, n, n, 1, a, n, a + size, n, 0,
+                a + 2 * size, n);
+    best = fmin(best, clock_cpu_s() - start);
+  }
+  free(a);
+  return 2.0 * n * n * n / best;
+}
+
+static enum status solve(const struct job_spec *spec, struct timing *t, struct error *error) {
+  struct mesh mesh = {0};
+  struct fe_model *model = NULL;
+  struct equilibrium *solver = NULL;
+  struct fe_state state = {0};
+  double wall = clock_wall_s(), cpu = clock_cpu_s();
+  enum status status = pneunet_mesh(spec, &mesh, error);
+  if (status != STATUS_OK) {
+    goto done;
+  }
+  status = model_create(&mesh, &spec->material, spec->contact, &model, error);
+  if (status != STATUS_OK) {
+    goto done;
+  }
+  status = equilibrium_create(model, &solver, error);
+  if (status == STATUS_OK) {
+    status = state_create(model, &state);
+  }
+  if (status != STATUS_OK) {
+    goto done;
+  }
+  t->setup = clock_cpu_s() - cpu;
+  solver->options.traction_tolerance = 0.01 * spec->load.pressure_to;
+  struct path_options path = {.pressure_to = spec->load.pressure_to, .steps = spec->load.steps};
+  status = path_follow(solver, &path, &state, error);
+  t->wall = clock_wall_s() - wall;
+  t->cpu = clock_cpu_s() - cpu;
+  t->parts = model->statistics;
+  t->factor = ldlt_statistics(model->ldlt);
+  t->unknowns = model->dof_count;
+  t->elements = mesh.element_count;
+done:
+  state_release(&state);
+  equilibrium_destroy(solver);
+  model_destroy(model);
+  mesh_release(&mesh);
+  return status;
+}
+
+static void print_part(const char *name, double seconds, int calls, double total) {
+  printf("  %-22s %7.3f s  %5.1f %%", name, seconds, 100 * seconds / total);
+  if (calls > 0) {
+    printf("  %5d x %.2f ms", calls, 1e3 * seconds / calls);
+  }
+  printf("\n");
+}
+
+static void print_timing(const struct timing *t, double rate) {
+  const struct fe_statistics *p = &t->parts;
+  double known = p->assembly_s + p->residual_s + p->factor_s + p->solve_s + p->contact_s;
+  double factor_rate = t->factor.flops * p->factorizations / p->factor_s;
+  struct rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  printf("%d elements, %d unknowns\n", t->elements, t->unknowns);
+  printf("wall %.3f s, cpu %.3f s, %d factorisations\n", t->wall, t->cpu, p->factorizations);
+  print_part("mesh and analysis", t->setup, 0, t->cpu);
+  print_part("assembly", p->assembly_s, p->assemblies, t->cpu);
+  print_part("residual", p->residual_s, p->residuals, t->cpu);
+  print_part("factorisation", p->factor_s, p->factorizations, t->cpu);
+  print_part("solution", p->solve_s, p->solves, t->cpu);
+  print_part("contact", p->contact_s, 0, t->cpu);
+  print_part("other", t->cpu - known - t->setup, 0, t->cpu);
+  printf("factor: %.3g Gflop, %.3g million entries, largest front %d\n", 1e-9 * t->factor.flops,
+         1e-6 * (double)t->factor.factor_entries, t->factor.largest_front);
+  printf("factorisation %.2f Gflop/s = %.2f of dgemm (%.1f Gflop/s)\n", 1e-9 * factor_rate,
+         factor_rate / rate, 1e-9 * rate);
+  printf("factorisations at the dgemm rate over cpu time: %.3f\n",
+         p->factorizations * t->factor.flops / rate / t->cpu);
+  printf("peak memory %.1f MB\n", (double)usage.ru_maxrss / 1024);
+}
+
+int main(int count, char **argument) {
+  struct job_spec spec;
+  if (count < 2) {
+    fprintf(stderr, "usage: %s JOB.json [repetitions]\n", argument[0]);
+    return EXIT_FAILURE;
+  }
+  if (!read_job(argument[1], &spec)) {
+    return EXIT_FAILURE;
+  }
+  long repetitions = count > 2 ? strtol(argument[2], NULL, 10) : 3;
+  openblas_set_num_threads(1);
+  double rate = dgemm_rate();
+  struct timing best = {.cpu = INFINITY};
+  for (long k = 0; k < repetitions; k++) {
+    struct timing t = {0};
+    struct error error = {0};
+    enum status status = solve(&spec, &t, &error);
+    if (status != STATUS_OK) {
+      fprintf(stderr, "%s: %s\n", status_word(status), error.message);
+      return EXIT_FAILURE;
+    }
+    best = t.cpu < best.cpu ? t : best;
+  }
+  printf("%s, best of %ld\n", spec.name, repetitions);
+  print_timing(&best, fmax(rate, dgemm_rate()));
+  return EXIT_SUCCESS;
+}
