@@ -9,7 +9,7 @@
 #include "server/base/file.h"
 #include "server/base/log.h"
 
-enum { POLL_MS = 250, GRACE_MS = 5000, POLL_FIRST_MS = 20, OUTPUT_BYTES_MAX = 1 << 30 };
+enum { POLL_MS = 250, GRACE_MS = 5000, POLL_FIRST_MS = 20, OUTPUT_BYTES_MAX = 256 << 20 };
 
 /* The paths of one attempt; room for the longest name after the data directory. */
 struct run_paths {

@@ -110,8 +110,9 @@ static bool guard_origin(const struct request *request, const char *host, struct
   const char *site = request_header(request, "Sec-Fetch-Site");
   bool foreign = site && strcasecmp(site, "same-origin") != 0 && strcasecmp(site, "none") != 0;
   if (origin) {
-    foreign = foreign || !host || strncasecmp(origin, "http://", 7) != 0 ||
-              strcasecmp(origin + 7, host) != 0;
+    const char *rest = strstr(origin, "://"); /* a proxy may speak https for us */
+    foreign = foreign || !host || !rest || strncasecmp(origin, "http", 4) != 0 ||
+              strcasecmp(rest + 3, host) != 0;
   }
   if (foreign && request->method != HTTP_GET) {
     return refuse(reply, 403, "cross_origin",

@@ -91,8 +91,8 @@ enum status store_claim(struct store *store, struct claim *claim, bool *claimed,
 
 enum status store_attempt_running(struct store *store, int64_t job_id, int64_t attempt, int64_t pid,
                                   struct error *error) {
-  enum job_state state;
-  int64_t failures;
+  enum job_state state = JOB_STATE_QUEUED;
+  int64_t failures = 0;
   enum status status = store_write_begin(store, error);
   if (status != STATUS_OK) {
     return status;
@@ -232,7 +232,7 @@ static enum status attempt_apply(sqlite3 *db, const struct attempt_outcome *outc
 
 enum status store_attempt_finish(struct store *store, const struct attempt_outcome *outcome,
                                  enum job_state *state, struct error *error) {
-  enum job_state before;
+  enum job_state before = JOB_STATE_QUEUED;
   int64_t failures = 0;
   enum status status = store_write_begin(store, error);
   if (status != STATUS_OK) {

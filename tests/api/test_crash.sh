@@ -117,4 +117,17 @@ stop_daemon TERM
 check "second signal: at once" "0 true" "$STATUS $([ $((SECONDS - start)) -le 3 ] && echo true)"
 check "still queued" queued "$(sql "select state from job where id = $sleepy")"
 check "no attempt was left open" 0 "$(sql "select count(*) from attempt where outcome = ''")"
+
+# A solver that is not there, and a data directory that cannot be made.
+start_daemon --workers 1 --retry-delay 0.1 --solver /nonexistent/pneulab-solve --listen '[::1]:0'
+curl -s -X POST "$URL/api/v1/jobs/$sleepy/cancel" > /dev/null
+fetch POST /api/v1/jobs -H 'Prefer: wait=20' --data-binary "$(job)"
+check "no solver" "failed worker_not_started 3" "$(field '.state + " " + .reason_code') $(field .attempt)"
+check_match "the message names it" "/nonexistent/pneulab-solve" "$(field .message)"
+check_match "IPv6" '^http://\[::1\]:' "$URL"
+"$BIN/pneulabd" --data /dev/null/x --listen 127.0.0.1:0 2> "$WORK/second"
+check "no data directory" 1 $?
+check_match "its reason" "/dev/null" "$(cat "$WORK/second")"
+"$BIN/pneulabd" --data "$WORK/other" --listen "127.0.0.1:99999" 2> "$WORK/second"
+check "a port that is none" 2 $?
 finish
