@@ -11,9 +11,10 @@
 json_t *result_warnings(const struct result *r) {
   const struct material_spec *m = &r->spec->material;
   json_t *list = json_array();
-  double reached = 1, unstable, wall = r->model->mesh->wall_thickness;
+  double reached = 1, bent = 0, unstable, wall = r->model->mesh->wall_thickness;
   for (size_t i = 0; i < r->sample_count; i++) {
     reached = fmax(reached, r->sample[i].max_stretch);
+    bent = fmax(bent, fabs(r->sample[i].shape.bending_angle));
   }
   if (!material_stable_to(m, reached, &unstable)) {
     json_array_append_new(
@@ -32,6 +33,12 @@ json_t *result_warnings(const struct result *r) {
                                ? "chambers overlap by %.3f mm, more than 2 %% of the thinnest wall"
                                : "contact is off and chambers overlap by %.3f mm",
                            1e3 * r->penetration));
+  }
+  if (bent > 1.5 * M_PI) {
+    json_array_append_new(
+        list, json_sprintf("the body bends by %.0f degrees: beyond about 270 it may meet itself, "
+                           "which only neighbouring chambers are kept from",
+                           bent * 180 / M_PI));
   }
   return list;
 }
