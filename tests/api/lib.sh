@@ -1,4 +1,4 @@
-# shellcheck shell=bash disable=SC2034
+# shellcheck shell=bash disable=SC2034,SC2120
 # Shared by the tests of the API: a real daemon on a free port with a data directory of its own,
 # and checks that count. Source it; it cleans up when the test ends.
 # Needs: bash, curl, jq, sqlite3. Binaries: $BIN (default: the current directory).
