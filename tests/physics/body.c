@@ -104,10 +104,12 @@ void body_mark_boundary(const struct mesh *mesh, unsigned char *on_boundary) {
   }
 }
 
-static bool face_lies_at(const struct mesh *mesh, const int nodes[QUAD9_NODES], int axis,
-                         double at) {
+static bool face_lies_at(const struct mesh *mesh, const int nodes[QUAD9_NODES], int axis, double at,
+                         double limit) {
   for (int m = 0; m < QUAD9_NODES; m++) {
-    if (fabs(mesh->x[3 * nodes[m] + axis] - at) > 1e-9 * (1e-3 + fabs(at))) {
+    const double *x = mesh->x + 3 * nodes[m];
+    if (fabs(x[axis] - at) > 1e-9 * (1e-3 + fabs(at)) || x[(axis + 1) % 3] > limit ||
+        x[(axis + 2) % 3] > limit) {
       return false;
     }
   }
@@ -115,12 +117,17 @@ static bool face_lies_at(const struct mesh *mesh, const int nodes[QUAD9_NODES], 
 }
 
 void body_add_traction(struct fe_model *model, int axis, double at, const double traction[3]) {
+  body_add_traction_within(model, axis, at, INFINITY, traction);
+}
+
+void body_add_traction_within(struct fe_model *model, int axis, double at, double limit,
+                              const double traction[3]) {
   const struct mesh *mesh = model->mesh;
   const struct quad9_tables *t = &model->quad9;
   for (int f = 0; f < mesh->face_count; f++) {
     int nodes[QUAD9_NODES];
     mesh_face_nodes(mesh, &mesh->faces[f], nodes);
-    if (!face_lies_at(mesh, nodes, axis, at)) {
+    if (!face_lies_at(mesh, nodes, axis, at, limit)) {
       continue;
     }
     for (int q = 0; q < QUAD9_POINTS; q++) {

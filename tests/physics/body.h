@@ -30,6 +30,10 @@ void body_mark_boundary(const struct mesh *mesh, unsigned char *on_boundary);
  * coordinate x[axis] = at. */
 void body_add_traction(struct fe_model *model, int axis, double at, const double traction[3]);
 
+/* The same on those of the faces whose nodes have no other coordinate above `limit`. */
+void body_add_traction_within(struct fe_model *model, int axis, double at, double limit,
+                              const double traction[3]);
+
 /* Model of a body without contact; fails the test when it cannot be made. */
 struct fe_model *body_model(const struct mesh *mesh, const struct material_spec *material);
 

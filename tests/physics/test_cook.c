@@ -59,7 +59,7 @@ START_TEST(free_sheet_meets_the_published_value) {
     snprintf(mesh, sizeof mesh, "%d x %d x 1", meshes[k], meshes[k]);
     report_value("Cook, nu = 0.3, free faces, tip, mm", mesh, 14.33, tip);
   }
-  report_check("Cook, nu = 0.3, free faces, tip, mm", "16 x 16 x 1", 14.33, tip, 5e-3);
+  ck_assert_double_eq_tol(tip, 14.33, 5e-3 * 14.33);
 }
 END_TEST
 
@@ -80,7 +80,6 @@ END_TEST
 START_TEST(nearly_incompressible) {
   double coarse = cook_tip(4, 1000, true), fine = cook_tip(16, 1000, true);
   report_check("Cook, bulk/shear 1000, 4 x 4 against 16 x 16, mm", "4 x 4", fine, coarse, 0.02);
-  report_value("Cook, bulk/shear 1000, tip displacement, mm", "16 x 16", fine, fine);
 }
 END_TEST
 

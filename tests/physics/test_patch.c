@@ -1,6 +1,7 @@
 /* Patch test: a distorted mesh reproduces every homogeneous deformation. */
 #include <check.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "solver/fe/vec3.h"
@@ -40,6 +41,8 @@ static const double deformations[][9] = {
     {1.4, 0.5, 0.1, -0.2, 0.9, 0.3, 0.1, -0.1, 0.7},
     {0.1, -1.3, 0.2, 0.9, 0.2, -0.1, 0.3, 0.1, 0.9},
 };
+static const char *const deformation_names[] = {"strain 1e-4", "stretch and shear",
+                                                "with a large rotation"};
 enum { DEFORMATIONS = sizeof deformations / sizeof *deformations };
 
 /* Every node but those of the flat sides is moved, middle nodes too. */
@@ -100,8 +103,9 @@ static void residual_size(struct fe_model *m, const struct fe_state *state, doub
 }
 
 static void solve_patch(const struct mesh *mesh, const struct material_spec *material,
-                        const double f[9]) {
+                        const double f[9], const char *deformation) {
   struct fe_model *m = body_model(mesh, material);
+  char what[80];
   struct fe_state exact, state;
   ck_assert_int_eq(state_create(m, &exact), STATUS_OK);
   ck_assert_int_eq(state_create(m, &state), STATUS_OK);
@@ -127,7 +131,8 @@ static void solve_patch(const struct mesh *mesh, const struct material_spec *mat
     error = fmax(error, fabs(state.u[d] - exact.u[d]));
   }
   ck_assert_msg(error < 1e-10 * size, "%s: error %.2e of %.2e", material->name, error, size);
-  report_value(material->name, "3 x 2 x 2, distorted", 0, error / size);
+  snprintf(what, sizeof what, "patch test, %s, %s", material->name, deformation);
+  report_value(what, "3 x 2 x 2, distorted", 0, error / size);
   state_release(&state);
   state_release(&exact);
   model_destroy(m);
@@ -146,7 +151,8 @@ START_TEST(homogeneous_deformation_is_reproduced) {
   }
   free(boundary);
   ck_assert_int_eq(interior, 5 * 3 * 3);
-  solve_patch(&mesh, &materials[_i / DEFORMATIONS], deformations[_i % DEFORMATIONS]);
+  solve_patch(&mesh, &materials[_i / DEFORMATIONS], deformations[_i % DEFORMATIONS],
+              deformation_names[_i % DEFORMATIONS]);
   mesh_release(&mesh);
 }
 END_TEST

@@ -1,6 +1,7 @@
 /* Stresses, tangents and load stiffness against central differences. */
 #include <check.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "solver/fe/pressure.h"
@@ -102,9 +103,12 @@ static void prepare_material(struct material_case *c, int index, const double f[
 START_TEST(stress_and_tangent_of_the_material) {
   static const double f[9] = {1.5, 0.4, -0.2, 0.3, 0.8, 0.25, -0.1, 0.35, 1.1};
   struct material_case c;
+  char stress_name[100], tangent_name[100];
   prepare_material(&c, _i, f);
-  report_second_order("stress from energy", stress_error, &c, 0.05, 4, 1e-8);
-  report_second_order("tangent from stress", tangent_error, &c, 0.05, 4, 1e-9);
+  snprintf(stress_name, sizeof stress_name, "stress from energy, %s", c.material->name);
+  snprintf(tangent_name, sizeof tangent_name, "tangent from stress, %s", c.material->name);
+  report_second_order(stress_name, stress_error, &c, 0.05, 4, 1e-8);
+  report_second_order(tangent_name, tangent_error, &c, 0.05, 4, 1e-9);
   for (int i = 0; i < 81; i++) {
     ck_assert_double_eq_tol(c.tangent[i], c.tangent[i % 9 * 9 + i / 9], 1e-13);
   }
@@ -257,7 +261,9 @@ START_TEST(tangent_of_the_element) {
   ck_assert(element_evaluate(&c.geometry, c.material, c.bulk_modulus, c.u, c.p, &c.work, residual,
                              c.packed, &c.internal));
   mixed_derivative(&c);
-  report_second_order(c.material->name, element_error, &c, 0.01, 4, 1e-8);
+  char what[100];
+  snprintf(what, sizeof what, "element tangent, %s", c.material->name);
+  report_second_order(what, element_error, &c, 0.01, 4, 1e-8);
 }
 END_TEST
 
