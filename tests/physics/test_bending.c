@@ -221,6 +221,46 @@ START_TEST(configurations_differ_as_expected) {
 }
 END_TEST
 
+/* ---- loads beyond what the body can carry ---- */
+
+static enum status keep_pressure(void *context, const struct path_point *point) {
+  *(double *)context = point->pressure;
+  return STATUS_OK;
+}
+
+/* The path has to end with a reason at the body's own limit, however far it was to go, and leave
+ * the last converged state. */
+START_TEST(path_ends_at_the_limit_of_the_body) {
+  static const double target[2] = {150e3, 400e3};
+  double reached[2];
+  for (int k = 0; k < 2; k++) {
+    struct job_spec spec;
+    struct pneunet_case c;
+    struct error error = {0};
+    coarse_spec(&spec, 3, target[k], 1);
+    spec.contact = true;
+    case_open(&c, &spec);
+    struct path_options options = {
+        .pressure_to = target[k], .steps = 1, .visit = keep_pressure, .context = &reached[k]};
+    enum status status = path_follow(c.solver, &options, &c.state, &error);
+    ck_assert_int_ne(status, STATUS_OK);
+    ck_assert_int_eq(error.status, status);
+    ck_assert_ptr_nonnull(strstr(error.message, "Pa of pressure"));
+    double angle = case_angle(&c.mesh, c.state.u);
+    ck_assert_double_gt(angle, 10);
+    ck_assert_double_lt(angle, 360);
+    struct fe_load load = {reached[k], reached[k], 0};
+    int iterations;
+    ck_assert_int_eq(equilibrium_solve(c.solver, &load, reached[k], &c.state, &iterations),
+                     STATUS_OK);
+    ck_assert_double_eq_tol(case_angle(&c.mesh, c.state.u), angle, 0.01 * angle);
+    case_close(&c);
+  }
+  printf("limit of 3 chambers: %.1f and %.1f kPa\n", 1e-3 * reached[0], 1e-3 * reached[1]);
+  ck_assert_double_eq_tol(reached[0], reached[1], 0.05 * reached[1]);
+}
+END_TEST
+
 /* ---- refinement ---- */
 
 /* Order q from the angles on meshes 1, 2, 3 (element size h = 1/n): (a1 - a2) / (a2 - a3) =
@@ -313,6 +353,7 @@ int main(void) {
   tcase_add_test(bending, gravity_pulls_where_it_points);
   tcase_add_test(bending, dead_load_is_the_weight);
   tcase_add_test(bending, configurations_differ_as_expected);
+  tcase_add_test(bending, path_ends_at_the_limit_of_the_body);
   tcase_add_test(bending, angle_converges);
   tcase_add_test(bending, angle_does_not_depend_on_contact_stiffness);
   suite_add_tcase(suite, bending);
