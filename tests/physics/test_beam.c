@@ -149,7 +149,7 @@ static void build_strip(double height, int cells, struct mesh *mesh) {
   mesh->fixed[3 * body_node(mesh, 0, 0, 0) + 2] = 1;
 }
 
-/* The whole load in one step: the tip turns by up to 80 degrees. */
+/* The whole load in one step: the tip turns by up to 82 degrees. */
 START_TEST(elastica_in_one_step) {
   static const double loads[] = {1, 4, 10};
   const double p = loads[_i], height = 0.01, area = height * height;
