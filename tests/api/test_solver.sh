@@ -3,7 +3,7 @@
 . "$(dirname "$0")/lib.sh"
 limit=2048
 # The shadow memory of a sanitizer does not fit under a limit of private memory.
-grep -aq __asan_init "$BIN/pneulab-solve" && limit=0
+grep -aqE '__(asan|tsan)_init' "$BIN/pneulab-solve" && limit=0
 start_daemon --solver "$BIN/pneulab-solve" --memory-limit "$limit"
 
 fetch POST /api/v1/jobs -H 'Prefer: wait=60' --data-binary "$(job)"

@@ -57,9 +57,13 @@ expect_no_errors() {
   fi
 }
 
+# The shadow memory of a sanitizer does not fit under a limit of private memory.
+limit=2048
+grep -aqE '__(asan|tsan)_init' ./pneulab-solve && limit=0
+
 start_daemon() {
   local i
-  ./pneulabd --data "$work/data" --listen 127.0.0.1:0 --workers 1 \
+  ./pneulabd --data "$work/data" --listen 127.0.0.1:0 --workers 1 --memory-limit "$limit" \
     > "$work/daemon.out" 2> "$work/daemon.err" &
   daemon_pid=$!
   for ((i = 0; i < 100; i++)); do
