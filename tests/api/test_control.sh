@@ -3,8 +3,8 @@
 . "$(dirname "$0")/lib.sh"
 start_daemon --workers 1 --retry-delay 0.1 --timeout-margin 0.5 --solver "$(solver '
 case $(jq -r .name "$job") in
-  stubborn) trap "" TERM; while :; do sleep 0.1; done ;;
-  long) progress 0.25 12.5; trap "exit 5" TERM; while :; do sleep 0.05; done ;;
+  stubborn) trap "" TERM; progress 0.25 12.5; while :; do sleep 0.1; done ;;
+  long) trap "exit 5" TERM; progress 0.25 12.5; while :; do sleep 0.05; done ;;
   polite) trap "result diverged timeout \"Out of time.\"; exit 3" TERM; while :; do sleep 0.05; done ;;
   refused) echo "{\"status\":\"invalid\",\"error\":{\"code\":\"invalid_job\",\"message\":\"Not like this.\",\"pointer\":\"/load\"}}"; exit 2 ;;
   *) result succeeded ;;
@@ -14,11 +14,15 @@ esac')"
 long=$(submit "$(job '.name = "long"')")
 queued=$(submit "$(job '.name = "queued behind it"')")
 check "it runs" running "$(wait_state "$long" running)"
-for _ in $(seq 40); do
-  fetch GET "/api/v1/jobs/$long"
-  [ "$(field .progress)" = 0.25 ] && break
-  sleep 0.05
-done
+# wait_progress ID: until the worker has told of its progress, by when its traps are set.
+wait_progress() {
+  for _ in $(seq 200); do
+    fetch GET "/api/v1/jobs/$1"
+    [ "$(field .progress)" = 0.25 ] && break
+    sleep 0.05
+  done
+}
+wait_progress "$long"
 check "progress is seen while it runs" 0.25 "$(field .progress)"
 check "the other one waits" queued "$(wait_state "$queued" queued)"
 fetch DELETE "/api/v1/jobs/$long"
@@ -38,6 +42,7 @@ check "no result of a cancelled job" 0 "$(sql "select count(*) from result where
 # A worker that does not listen is killed after five seconds.
 stubborn=$(submit "$(job '.name = "stubborn"')")
 check "it runs" running "$(wait_state "$stubborn" running)"
+wait_progress "$stubborn"
 start=$SECONDS
 fetch POST "/api/v1/jobs/$stubborn/cancel"
 check "cancelling is accepted" "202 cancelling" "$CODE $(field .state)"
@@ -83,7 +88,7 @@ late=$(submit "$(job '.name = "stubborn" | .timeout = "1 s"')")
 check "an overrunning worker is ended" timed_out "$(wait_state "$late" 'timed_out|failed' 20)"
 fetch GET "/api/v1/jobs/$late"
 check "reason" timeout "$(field .reason_code)"
-polite=$(submit "$(job '.name = "polite" | .timeout = "1 s"')")
+polite=$(submit "$(job '.name = "polite" | .timeout = "3 s"')")
 check "a solve that stops in time" timed_out "$(wait_state "$polite" 'timed_out|failed' 20)"
 fetch GET "/api/v1/jobs/$polite"
 check "keeps what it has" "timeout 64.25" "$(field .reason_code) $(field .metrics.bending_angle_deg)"
