@@ -203,6 +203,27 @@ static enum status newton(struct equilibrium *s, const struct fe_load *load,
   return STATUS_DIVERGED;
 }
 
+/* Tangent predictor with the factor that the last equilibrium left behind: it belongs to a state
+ * so close to that equilibrium that factorising there anew would gain nothing. Returns OK when
+ * the prediction, polished, is already the new equilibrium, DIVERGED when Newton's method has to
+ * go on from it, or from the old state if the prediction was no good. */
+static enum status predict(struct equilibrium *s, const struct fe_load *load,
+                           struct fe_state *state) {
+  struct fe_model *m = s->model;
+  if (model_evaluate(m, state, load, false) != STATUS_OK) {
+    return STATUS_DIVERGED;
+  }
+  model_solve(m, m->residual, s->step);
+  double size = rms(s, s->step), most = largest(s, s->step);
+  double share = most > s->options.longest_step ? s->options.longest_step / most : 1;
+  if (!isfinite(size) || take_step(s, load, state, &share) != STATUS_OK) {
+    return STATUS_DIVERGED;
+  }
+  s->last_correction = size;
+  bool good = share == 1 && polish(s, load, state, size, 0.1, s->options.step_tolerance);
+  return good ? STATUS_OK : STATUS_DIVERGED;
+}
+
 /* Raises the contact multipliers to the tractions until they settle; the factor stays frozen
  * while that contracts. */
 static enum status augment(struct equilibrium *s, const struct fe_load *load,
@@ -237,12 +258,21 @@ enum status equilibrium_solve(struct equilibrium *s, const struct fe_load *load,
     m->contact.point[i].lambda = state->lambda[i];
   }
   *iterations = 0;
-  enum status status = newton(s, load, previous_pressure, state, iterations);
+  enum status status = STATUS_DIVERGED;
+  if (s->factor_fits) {
+    status = predict(s, load, state);
+    previous_pressure = load->pressure;
+  }
+  s->factor_fits = false;
+  if (status != STATUS_OK) {
+    status = newton(s, load, previous_pressure, state, iterations);
+  }
   if (status == STATUS_OK && m->use_contact) {
     status = augment(s, load, state, iterations);
   }
   for (int i = 0; i < points; i++) {
     state->lambda[i] = m->contact.point[i].lambda;
   }
+  s->factor_fits = status == STATUS_OK;
   return status;
 }

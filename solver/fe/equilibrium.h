@@ -25,6 +25,7 @@ struct equilibrium {
   double *step;           /* dof_count */
   double *chord;          /* dof_count */
   double *increment;      /* node_count x 3 */
+  bool factor_fits;       /* the factor is that of the last equilibrium, or next to it */
   int negative_pivots;    /* of the last factorisation */
   double last_correction; /* rms of the last correction, m */
   int verbose;            /* 1: a line an iteration on standard error */
