@@ -40,8 +40,10 @@ enum status equilibrium_create(struct fe_model *model, struct equilibrium **out,
   s->retraction = retraction_create(model->mesh);
   s->step = calloc((size_t)model->dof_count + 1, sizeof *s->step);
   s->chord = calloc((size_t)model->dof_count + 1, sizeof *s->chord);
+  s->lambda_step =
+      calloc((size_t)model->contact.pair_count * QUAD9_POINTS + 1, sizeof *s->lambda_step);
   s->increment = calloc(3 * (size_t)model->mesh->node_count, sizeof *s->increment);
-  if (!s->retraction || !s->step || !s->chord || !s->increment ||
+  if (!s->retraction || !s->step || !s->chord || !s->increment || !s->lambda_step ||
       state_create(model, &s->saved) != STATUS_OK) {
     equilibrium_destroy(s);
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the solver");
@@ -59,6 +61,7 @@ void equilibrium_destroy(struct equilibrium *s) {
   free(s->step);
   free(s->chord);
   free(s->increment);
+  free(s->lambda_step);
   free(s);
 }
 
@@ -250,15 +253,31 @@ static enum status augment(struct equilibrium *s, const struct fe_load *load,
   return STATUS_OK;
 }
 
+/* Multipliers to start from: those of the state, carried on at the rate of the last step. */
+static void start_multipliers(struct equilibrium *s, const struct fe_state *state, double ratio) {
+  struct contact *contact = &s->model->contact;
+  for (int i = 0; i < contact->pair_count * QUAD9_POINTS; i++) {
+    double change = state->lambda[i] > 0 ? ratio * s->lambda_step[i] : 0;
+    contact->point[i].lambda = fmax(0, state->lambda[i] + change);
+  }
+}
+
+/* The state takes over the multipliers of the contact. */
+static void keep_multipliers(struct equilibrium *s, struct fe_state *state) {
+  const struct contact *contact = &s->model->contact;
+  for (int i = 0; i < contact->pair_count * QUAD9_POINTS; i++) {
+    s->lambda_step[i] = contact->point[i].lambda - state->lambda[i];
+    state->lambda[i] = contact->point[i].lambda;
+  }
+}
+
 enum status equilibrium_solve(struct equilibrium *s, const struct fe_load *load,
                               double previous_pressure, struct fe_state *state, int *iterations) {
-  struct fe_model *m = s->model;
-  int points = m->contact.pair_count * QUAD9_POINTS;
-  for (int i = 0; i < points; i++) {
-    m->contact.point[i].lambda = state->lambda[i];
-  }
-  *iterations = 0;
   enum status status = STATUS_DIVERGED;
+  double pressure_step = load->pressure - previous_pressure;
+  bool continues = s->factor_fits && s->pressure_step != 0;
+  start_multipliers(s, state, continues ? pressure_step / s->pressure_step : 0);
+  *iterations = 0;
   if (s->factor_fits) {
     status = predict(s, load, state);
     previous_pressure = load->pressure;
@@ -267,12 +286,11 @@ enum status equilibrium_solve(struct equilibrium *s, const struct fe_load *load,
   if (status != STATUS_OK) {
     status = newton(s, load, previous_pressure, state, iterations);
   }
-  if (status == STATUS_OK && m->use_contact) {
+  if (status == STATUS_OK && s->model->use_contact) {
     status = augment(s, load, state, iterations);
   }
-  for (int i = 0; i < points; i++) {
-    state->lambda[i] = m->contact.point[i].lambda;
-  }
+  keep_multipliers(s, state);
+  s->pressure_step = pressure_step;
   s->factor_fits = status == STATUS_OK;
   return status;
 }

@@ -25,6 +25,8 @@ struct equilibrium {
   double *step;           /* dof_count */
   double *chord;          /* dof_count */
   double *increment;      /* node_count x 3 */
+  double *lambda_step;    /* change of every contact multiplier in the last solve, Pa */
+  double pressure_step;   /* change of the pressure in the last solve, Pa */
   bool factor_fits;       /* the factor is that of the last equilibrium, or next to it */
   int negative_pivots;    /* of the last factorisation */
   double last_correction; /* rms of the last correction, m */
