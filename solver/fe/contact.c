@@ -238,12 +238,27 @@ struct contact_summary contact_summarise(const struct contact *contact) {
   return summary;
 }
 
-double contact_update_multipliers(struct contact *contact) {
+/* Aitken's factor for the next update, from this and the last t - lambda of all points. */
+static double aitken_factor(const struct contact *contact, double last_factor) {
+  double product = 0, square = 0;
+  for (int i = 0; i < contact->pair_count * QUAD9_POINTS; i++) {
+    const struct contact_point *point = &contact->point[i];
+    double difference = point->traction - point->lambda - point->change;
+    product += point->change * difference;
+    square += difference * difference;
+  }
+  double factor = square > 0 ? -last_factor * product / square : 1;
+  return fmax(1, fmin(10, factor));
+}
+
+double contact_update_multipliers(struct contact *contact, double *relaxation) {
   double largest = 0;
+  *relaxation = *relaxation > 0 ? aitken_factor(contact, *relaxation) : 1;
   for (int i = 0; i < contact->pair_count * QUAD9_POINTS; i++) {
     struct contact_point *point = &contact->point[i];
-    largest = fmax(largest, fabs(point->traction - point->lambda));
-    point->lambda = point->traction;
+    point->change = point->traction - point->lambda;
+    largest = fmax(largest, fabs(point->change));
+    point->lambda = fmax(0, point->lambda + *relaxation * point->change);
   }
   return largest;
 }

@@ -19,6 +19,7 @@ enum {
 struct contact_point {
   double area;     /* reference area, m2 */
   double lambda;   /* multiplier, Pa, >= 0 */
+  double change;   /* traction - multiplier at the last update of the multipliers, Pa */
   double gap;      /* last evaluated, m; negative when penetrating */
   double traction; /* last evaluated, Pa */
   double xi[2];    /* closest point on the master face */
@@ -56,7 +57,10 @@ bool contact_evaluate(struct contact *contact, int pair, double x[CONTACT_NODES]
 
 struct contact_summary contact_summarise(const struct contact *contact);
 
-/* lambda <- traction. Returns the largest change in Pa. */
-double contact_update_multipliers(struct contact *contact);
+/* Moves the multipliers towards the tractions: lambda <- max(0, lambda + w (t - lambda)).
+ * *relaxation is w: 0 on entry starts a sequence of updates with w = 1; later calls extrapolate
+ * the sequence by Aitken's rule for vectors (Irons, Tuck 1969), 1 <= w <= 10. Returns the largest
+ * |t - lambda| before the update in Pa. */
+double contact_update_multipliers(struct contact *contact, double *relaxation);
 
 #endif

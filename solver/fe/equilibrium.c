@@ -232,8 +232,9 @@ static enum status predict(struct equilibrium *s, const struct fe_load *load,
 static enum status augment(struct equilibrium *s, const struct fe_load *load,
                            struct fe_state *state, int *iterations) {
   struct fe_model *m = s->model;
+  double relaxation = 0;
   for (int k = 0; k < AUGMENTATIONS; k++) {
-    double change = contact_update_multipliers(&m->contact);
+    double change = contact_update_multipliers(&m->contact, &relaxation);
     if (s->verbose) {
       fprintf(stderr, "    augmentation %d: change %.3e Pa, gap %.3e\n", k, change,
               contact_summarise(&m->contact).min_gap);
