@@ -130,9 +130,9 @@ static enum status take_step(struct equilibrium *s, const struct fe_load *load,
 /* Simplified Newton steps with the last factor while they contract. The residual belongs to the
  * state on entry and on exit. Returns true once converged. size is the last correction's. */
 static bool polish(struct equilibrium *s, const struct fe_load *load, struct fe_state *state,
-                   double size, double first_contraction, double tolerance) {
+                   double size, double first_contraction) {
   struct fe_model *m = s->model;
-  double limit = first_contraction;
+  double limit = first_contraction, tolerance = s->options.step_tolerance;
   for (int k = 0; k < CHORD_STEPS; k++) {
     model_solve(m, m->residual, s->chord);
     double next = rms(s, s->chord);
@@ -158,6 +158,23 @@ static bool polish(struct equilibrium *s, const struct fe_load *load, struct fe_
   return false;
 }
 
+/* Takes s->step, of rms `size`, no further than the longest step, and polishes what a whole step
+ * reached. *converged tells whether that is the equilibrium. */
+static enum status step_and_polish(struct equilibrium *s, const struct fe_load *load,
+                                   struct fe_state *state, double size, bool *converged) {
+  double most = largest(s, s->step);
+  double share = most > s->options.longest_step ? s->options.longest_step / most : 1;
+  enum status status = take_step(s, load, state, &share);
+  if (s->verbose) {
+    struct contact_summary c = contact_summarise(&s->model->contact);
+    fprintf(stderr, "    step %.2e share %.2f negative %d active %d gap %.3e\n", size, share,
+            s->negative_pivots, c.active, c.min_gap);
+  }
+  s->last_correction = size;
+  *converged = status == STATUS_OK && share == 1 && polish(s, load, state, size, 0.1);
+  return status;
+}
+
 static enum status newton(struct equilibrium *s, const struct fe_load *load,
                           double stiffness_pressure, struct fe_state *state, int *iterations) {
   struct fe_model *m = s->model;
@@ -178,7 +195,7 @@ static enum status newton(struct equilibrium *s, const struct fe_load *load,
     model_solve(m, m->residual, s->step);
     ++*iterations;
     m->statistics.newton_iterations++;
-    double size = rms(s, s->step), most = largest(s, s->step);
+    double size = rms(s, s->step);
     if (!isfinite(size)) {
       return STATUS_DIVERGED;
     }
@@ -188,19 +205,10 @@ static enum status newton(struct equilibrium *s, const struct fe_load *load,
     } else if (it - best_iteration >= STALL_ITERATIONS) {
       return STATUS_DIVERGED;
     }
-    double share = most > s->options.longest_step ? s->options.longest_step / most : 1;
-    status = take_step(s, load, state, &share);
-    if (s->verbose) {
-      struct contact_summary c = contact_summarise(&m->contact);
-      fprintf(stderr, "    it %d step %.2e share %.2f negative %d active %d gap %.3e\n", it, size,
-              share, s->negative_pivots, c.active, c.min_gap);
-    }
-    if (status != STATUS_OK) {
+    bool converged;
+    status = step_and_polish(s, load, state, size, &converged);
+    if (status != STATUS_OK || converged) {
       return status;
-    }
-    s->last_correction = size;
-    if (share == 1 && polish(s, load, state, size, 0.1, s->options.step_tolerance)) {
-      return STATUS_OK;
     }
   }
   return STATUS_DIVERGED;
@@ -217,14 +225,12 @@ static enum status predict(struct equilibrium *s, const struct fe_load *load,
     return STATUS_DIVERGED;
   }
   model_solve(m, m->residual, s->step);
-  double size = rms(s, s->step), most = largest(s, s->step);
-  double share = most > s->options.longest_step ? s->options.longest_step / most : 1;
-  if (!isfinite(size) || take_step(s, load, state, &share) != STATUS_OK) {
-    return STATUS_DIVERGED;
+  double size = rms(s, s->step);
+  bool converged = false;
+  if (isfinite(size)) {
+    step_and_polish(s, load, state, size, &converged);
   }
-  s->last_correction = size;
-  bool good = share == 1 && polish(s, load, state, size, 0.1, s->options.step_tolerance);
-  return good ? STATUS_OK : STATUS_DIVERGED;
+  return converged ? STATUS_OK : STATUS_DIVERGED;
 }
 
 /* Raises the contact multipliers to the tractions until they settle; the factor stays frozen
@@ -243,7 +249,7 @@ static enum status augment(struct equilibrium *s, const struct fe_load *load,
       break;
     }
     enum status status = model_evaluate(m, state, load, false);
-    if (status == STATUS_OK && polish(s, load, state, INFINITY, 1, s->options.step_tolerance)) {
+    if (status == STATUS_OK && polish(s, load, state, INFINITY, 1)) {
       continue;
     }
     status = newton(s, load, load->pressure, state, iterations);

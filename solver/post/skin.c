@@ -76,8 +76,9 @@ void skin_release(struct skin *skin) {
   *skin = (struct skin){0};
 }
 
-void skin_position(const struct mesh *mesh, const struct skin *skin, const double *u, int point,
-                   double x[3]) {
+/* Position of a point, m; u NULL gives the undeformed one. */
+static void skin_position(const struct mesh *mesh, const struct skin *skin, const double *u,
+                          int point, double x[3]) {
   int node = skin->node[point];
   for (int i = 0; i < 3; i++) {
     x[i] = mesh->x[3 * node + i] + (u ? u[3 * node + i] : 0);

@@ -22,10 +22,6 @@ enum status skin_create(const struct mesh *mesh, bool cavities, struct skin *ski
                         struct error *error);
 void skin_release(struct skin *skin);
 
-/* Position of a point, m; u NULL gives the undeformed one. */
-void skin_position(const struct mesh *mesh, const struct skin *skin, const double *u, int point,
-                   double x[3]);
-
 /* The quadrilaterals as a JSON array of [a, b, c, d]. NULL when memory runs out. */
 json_t *skin_quads(const struct skin *skin);
 
