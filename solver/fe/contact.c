@@ -101,9 +101,8 @@ static bool project(double master[][3], const double slave[3], double xi[2], str
   return false;
 }
 
-/* Traction and its negative derivative -dt/dg at gap g. */
-static double contact_law(const struct contact *contact, double lambda, double g, double *slope) {
-  double eps = contact->stiffness, delta = contact->smoothing, x = g - lambda / eps;
+/* The smoothed law of x = g - lambda/eps: traction and its negative derivative. */
+static double contact_law(double eps, double delta, double x, double *slope) {
   if (x >= delta) {
     *slope = 0;
     return 0;
@@ -114,6 +113,30 @@ static double contact_law(const struct contact *contact, double lambda, double g
   }
   *slope = eps * (delta - x) / (2 * delta);
   return eps * (delta - x) * (delta - x) / (4 * delta);
+}
+
+/* Traction of a point at its gap, with its gain, and the negative derivative to the gap. */
+static double point_traction(const struct contact *contact, const struct contact_point *point,
+                             double *slope) {
+  double x = point->gap - point->lambda / contact->stiffness;
+  double traction = contact_law(contact->stiffness, contact->smoothing, x, slope);
+  if (point->gain > 0) {
+    *slope *= point->gain;
+    traction = point->anchor + point->gain * (traction - point->anchor);
+  }
+  return traction;
+}
+
+void contact_follow(struct contact *contact, double cap) {
+  double eps = contact->stiffness, slope;
+  for (int i = 0; i < contact->pair_count * QUAD9_POINTS; i++) {
+    struct contact_point *point = &contact->point[i];
+    point->gain = 0;
+    if (cap > 0 && point->valid) {
+      point->anchor = point_traction(contact, point, &slope);
+      point->gain = slope < eps * (1 - 1 / cap) ? 1 / (1 - slope / eps) : cap;
+    }
+  }
 }
 
 /* Adds the Hessian e'' n n^T + e' Hess g of the potential e(g), e' = first, e'' = second. With
@@ -199,7 +222,7 @@ bool contact_evaluate(struct contact *contact, int pair, double x[CONTACT_NODES]
     if (!point->valid) {
       continue;
     }
-    point->traction = contact_law(contact, point->lambda, point->gap, &slope);
+    point->traction = point_traction(contact, point, &slope);
     if (slope <= 0) {
       continue;
     }

@@ -24,6 +24,8 @@ struct contact_point {
   double traction; /* last evaluated, Pa */
   double xi[2];    /* closest point on the master face */
   bool valid;      /* the closest point lies on the (slightly extended) master face */
+  double gain;     /* 0, or how much faster the traction grows: see contact_follow */
+  double anchor;   /* with a gain: the traction from which on it grows faster, Pa */
 };
 
 struct contact {
@@ -62,5 +64,11 @@ struct contact_summary contact_summarise(const struct contact *contact);
  * the sequence by Aitken's rule for vectors (Irons, Tuck 1969), 1 <= w <= 10. Returns the largest
  * |t - lambda| before the update in Pa. */
 double contact_update_multipliers(struct contact *contact, double *relaxation);
+
+/* Prepares for derivatives of a state whose multipliers have settled. There the multipliers
+ * follow the tractions, d lambda = dt, so that the traction changes 1 / (1 - slope/eps) times as
+ * fast as with held multipliers. Each point gets that gain over its last evaluated traction; a
+ * closed point, which is rigid, gets `cap` (> 1). cap = 0 brings the ordinary law back. */
+void contact_follow(struct contact *contact, double cap);
 
 #endif
