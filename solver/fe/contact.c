@@ -122,7 +122,7 @@ static double point_traction(const struct contact *contact, const struct contact
   double traction = contact_law(contact->stiffness, contact->smoothing, x, slope);
   if (point->gain > 0) {
     *slope *= point->gain;
-    traction = point->anchor + point->gain * (traction - point->anchor);
+    traction = point->lambda + point->gain * (traction - point->lambda);
   }
   return traction;
 }
@@ -133,7 +133,7 @@ void contact_follow(struct contact *contact, double cap) {
     struct contact_point *point = &contact->point[i];
     point->gain = 0;
     if (cap > 0 && point->valid) {
-      point->anchor = point_traction(contact, point, &slope);
+      point_traction(contact, point, &slope);
       point->gain = slope < eps * (1 - 1 / cap) ? 1 / (1 - slope / eps) : cap;
     }
   }

@@ -24,8 +24,7 @@ struct contact_point {
   double traction; /* last evaluated, Pa */
   double xi[2];    /* closest point on the master face */
   bool valid;      /* the closest point lies on the (slightly extended) master face */
-  double gain;     /* 0, or how much faster the traction grows: see contact_follow */
-  double anchor;   /* with a gain: the traction from which on it grows faster, Pa */
+  double gain;     /* 0, or how much faster the traction changes: see contact_follow */
 };
 
 struct contact {
@@ -65,10 +64,11 @@ struct contact_summary contact_summarise(const struct contact *contact);
  * |t - lambda| before the update in Pa. */
 double contact_update_multipliers(struct contact *contact, double *relaxation);
 
-/* Prepares for derivatives of a state whose multipliers have settled. There the multipliers
- * follow the tractions, d lambda = dt, so that the traction changes 1 / (1 - slope/eps) times as
- * fast as with held multipliers. Each point gets that gain over its last evaluated traction; a
- * closed point, which is rigid, gets `cap` (> 1). cap = 0 brings the ordinary law back. */
+/* Prepares for derivatives of a state whose multipliers have settled. There they follow the
+ * tractions, d lambda = dt, so that the traction changes 1 / (1 - slope/eps) times as fast as with
+ * held multipliers. Each point gets that gain, taken at its last gap: its traction becomes
+ * lambda + gain (t - lambda). A closed point is rigid and gets `cap` (> 1). cap = 0 brings the
+ * ordinary law back. */
 void contact_follow(struct contact *contact, double cap);
 
 #endif
