@@ -7,7 +7,7 @@ build_packages=(
   libpng-dev libcairo2-dev libpango1.0-dev libjansson-dev libudunits2-dev libmd-dev check
   fonts-dejavu-core curl jq sqlite3
 )
-test_packages=(chromium calculix-ccx python3 python3-jsonschema procps)
+test_packages=(chromium calculix-ccx python3 python3-jsonschema procps libmumps-seq-dev)
 
 say() {
   printf '\n== %s\n' "$*"
