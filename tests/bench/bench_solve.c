@@ -6,14 +6,11 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include "solver/base/clock.h"
 #include "solver/fe/path.h"
-#include "solver/job/spec.h"
 #include "solver/mesh/pneunet.h"
-
-enum { JOB_SIZE_MAX = 1 << 20 };
+#include "tests/bench/bench.h"
 
 /* Times and counts of one solve. */
 struct timing {
@@ -22,49 +19,6 @@ struct timing {
   struct ldlt_statistics factor;
   int unknowns, elements;
 };
-
-static bool read_job(const char *path, struct job_spec *spec) {
-  struct error error = {0};
-  bool read = false;
-  char *text = malloc(JOB_SIZE_MAX);
-  FILE *file = fopen(path, "rb");
-  if (!text || !file) {
-    perror(path);
-    goto done;
-  }
-  size_t size = fread(text, 1, JOB_SIZE_MAX, file);
-  read = job_spec_read(text, size, spec, &error) == STATUS_OK;
-  if (!read) {
-    fprintf(stderr, "%s: %s\n", path, error.message);
-  }
-done:
-  if (file) {
-    fclose(file);
-  }
-  free(text);
-  return read;
-}
-
-/* Best rate of several products of 640 x 640 matrices, flop/s. */
-static double dgemm_rate(void) {
-  const int n = 640;
-  const size_t size = (size_t)n * (size_t)n;
-  double *a = malloc(3 * size * sizeof *a), best = INFINITY;
-  if (!a) {
-    return NAN;
-  }
-  for (size_t i = 0; i < 3 * size; i++) {
-    a[i] = 1 / (1.0 + (double)i);
-  }
-  for (int k = 0; k < 12; k++) {
-    double start = clock_cpu_s();
-    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, n, n, n, 1, a, n, a + size, n, 0,
-                a + 2 * size, n);
-    best = fmin(best, clock_cpu_s() - start);
-  }
-  free(a);
-  return 2.0 * n * n * n / best;
-}
 
 static enum status solve(const struct job_spec *spec, struct timing *t, struct error *error) {
   struct mesh mesh = {0};
@@ -143,12 +97,12 @@ int main(int count, char **argument) {
     fprintf(stderr, "usage: %s JOB.json [repetitions]\n", argument[0]);
     return EXIT_FAILURE;
   }
-  if (!read_job(argument[1], &spec)) {
+  if (!bench_read_job(argument[1], &spec)) {
     return EXIT_FAILURE;
   }
   long repetitions = count > 2 ? strtol(argument[2], NULL, 10) : 3;
   openblas_set_num_threads(1);
-  double rate = dgemm_rate();
+  double rate = bench_dgemm_rate();
   struct timing best = {.cpu = INFINITY};
   for (long k = 0; k < repetitions; k++) {
     struct timing t = {0};
@@ -161,6 +115,6 @@ int main(int count, char **argument) {
     best = t.cpu < best.cpu ? t : best;
   }
   printf("%s, best of %ld\n", spec.name, repetitions);
-  print_timing(&best, fmax(rate, dgemm_rate()));
+  print_timing(&best, fmax(rate, bench_dgemm_rate()));
   return EXIT_SUCCESS;
 }
