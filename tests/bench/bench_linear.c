@@ -72,13 +72,15 @@ static const struct cholmod_choice cholmod_choices[] = {
     {"simplicial LDL' AMD", CHOLMOD_AMD, false, {0}, {0}},
 };
 
-/* Orderings of MUMPS: 0 AMD, 2 AMF, 4 PORD, 5 METIS, 3 SCOTCH. */
+/* MUMPS 5.5 orders element input by AMD only, unless it is given an order. */
 static const struct mumps_choice mumps_choices[] = {
-    {"elements AMD", 0, true, 0.01},    {"elements AMF", 2, true, 0.01},
-    {"elements PORD", 4, true, 0.01},   {"elements METIS", 5, true, 0.01},
-    {"elements SCOTCH", 3, true, 0.01}, {"elements AMF, no pivoting", 2, true, 0},
-    {"assembled AMD", 0, false, 0.01},  {"assembled AMF", 2, false, 0.01},
-    {"assembled PORD", 4, false, 0.01}, {"assembled METIS", 5, false, 0.01},
+    {"elements AMD", MUMPS_ORDER_AMD, true, 0.01},
+    {"elements METIS", MUMPS_ORDER_GIVEN, true, 0.01},
+    {"elements AMD, no pivoting", MUMPS_ORDER_AMD, true, 0},
+    {"assembled AMD", MUMPS_ORDER_AMD, false, 0.01},
+    {"assembled AMF", MUMPS_ORDER_AMF, false, 0.01},
+    {"assembled PORD", MUMPS_ORDER_PORD, false, 0.01},
+    {"assembled METIS", MUMPS_ORDER_GIVEN, false, 0.01},
 };
 
 static double whole(const struct linear_figures *f) {
@@ -89,7 +91,7 @@ static void print_run(const struct linear_figures *f, const struct linear_figure
                       double rate) {
   printf("  %-8s %-26s ", f->solver, f->variant);
   if (!f->solved) {
-    printf("%s\n", f->note);
+    printf("%s\n", f->note[0] ? f->note : "not solved");
     return;
   }
   char negative[16] = "-";

@@ -77,11 +77,7 @@ static bool solve(const struct linear_problem *problem, cholmod_factor *l, cholm
   return solved;
 }
 
-void linear_run_cholmod(const struct linear_problem *problem, struct linear_matrix *matrix,
-                        const struct cholmod_choice *choice, struct linear_figures *figures) {
-  cholmod_common c;
-  cholmod_start(&c);
-  configure(&c, choice);
+static cholmod_sparse sparse_view(const struct linear_matrix *matrix) {
   size_t order = (size_t)matrix->order;
   cholmod_sparse a = {.nrow = order, .ncol = order, .nzmax = (size_t)matrix->start[matrix->order]};
   a.p = matrix->start;
@@ -92,6 +88,31 @@ void linear_run_cholmod(const struct linear_problem *problem, struct linear_matr
   a.xtype = CHOLMOD_REAL;
   a.dtype = CHOLMOD_DOUBLE;
   a.sorted = a.packed = 1;
+  return a;
+}
+
+bool linear_metis_order(const struct linear_matrix *matrix, int *place) {
+  cholmod_common c;
+  cholmod_start(&c);
+  configure(&c, &(struct cholmod_choice){.ordering = CHOLMOD_METIS});
+  cholmod_sparse a = sparse_view(matrix);
+  cholmod_factor *l = cholmod_analyze(&a, &c);
+  const int *order = l ? l->Perm : NULL;
+  for (int k = 0; l && k < matrix->order; k++) {
+    place[order[k]] = k;
+  }
+  bool ordered = l != NULL;
+  cholmod_free_factor(&l, &c);
+  cholmod_finish(&c);
+  return ordered;
+}
+
+void linear_run_cholmod(const struct linear_problem *problem, struct linear_matrix *matrix,
+                        const struct cholmod_choice *choice, struct linear_figures *figures) {
+  cholmod_common c;
+  cholmod_start(&c);
+  configure(&c, choice);
+  cholmod_sparse a = sparse_view(matrix);
   snprintf(figures->solver, sizeof figures->solver, "CHOLMOD");
   snprintf(figures->variant, sizeof figures->variant, "%s", choice->name);
   figures->negative = -1;

@@ -15,12 +15,14 @@ enum { JOB_BEGIN = -1, JOB_END = -2, JOB_ANALYSE = 1, JOB_FACTOR, JOB_SOLVE, WOR
 /* Arrays lent to MUMPS. */
 struct input {
   int *first, *second; /* rows and columns, or starts and unknowns of the elements; from 1 */
+  int *place;          /* of every unknown in an order that is given; from 1 */
   double *value, *x;
 };
 
 static void input_release(struct input *in) {
   free(in->first);
   free(in->second);
+  free(in->place);
   free(in->value);
   free(in->x);
 }
@@ -88,6 +90,18 @@ static bool assembled_pattern(const struct linear_matrix *matrix, struct input *
   id->irn = in->first;
   id->jcn = in->second;
   id->a = matrix->value;
+  return true;
+}
+
+static bool give_order(const struct linear_matrix *matrix, struct input *in, DMUMPS_STRUC_C *id) {
+  in->place = calloc((size_t)matrix->order + 1, sizeof *in->place);
+  if (!in->place || !linear_metis_order(matrix, in->place)) {
+    return false;
+  }
+  for (int i = 0; i < matrix->order; i++) {
+    in->place[i]++;
+  }
+  id->perm_in = in->place;
   return true;
 }
 
@@ -169,11 +183,14 @@ void linear_run_mumps(const struct linear_problem *problem, struct linear_matrix
   in.x = calloc((size_t)id.n, sizeof *in.x);
   bool ready = in.x && (choice->elements ? element_pattern(problem, &in, &id)
                                          : assembled_pattern(matrix, &in, &id));
+  double start = clock_cpu_s();
+  if (ready && choice->ordering == MUMPS_ORDER_GIVEN) {
+    ready = give_order(matrix, &in, &id);
+  }
   if (!ready) {
     snprintf(figures->note, sizeof figures->note, "no memory");
     goto done;
   }
-  double start = clock_cpu_s();
   if (!call(&id, JOB_ANALYSE, figures)) {
     goto done;
   }

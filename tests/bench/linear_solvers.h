@@ -41,9 +41,14 @@ struct cholmod_choice {
 void linear_run_cholmod(const struct linear_problem *problem, struct linear_matrix *matrix,
                         const struct cholmod_choice *choice, struct linear_figures *figures);
 
+/* CHOLMOD's METIS order of the matrix: place[unknown], from 0. False when it fails. */
+bool linear_metis_order(const struct linear_matrix *matrix, int *place);
+
+enum { MUMPS_ORDER_AMD = 0, MUMPS_ORDER_GIVEN = 1, MUMPS_ORDER_AMF = 2, MUMPS_ORDER_PORD = 4 };
+
 struct mumps_choice {
   const char *name;
-  int ordering; /* ICNTL(7) */
+  int ordering; /* ICNTL(7); MUMPS_ORDER_GIVEN takes linear_metis_order */
   bool elements;
   double threshold; /* CNTL(1): 0 takes every pivot as it comes */
 };
