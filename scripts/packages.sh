@@ -4,7 +4,7 @@
 build_packages=(
   build-essential autoconf automake pkg-config
   libmicrohttpd-dev libsqlite3-dev libsundials-dev libsuitesparse-dev libopenblas-dev
-  libpng-dev libcairo2-dev libpango1.0-dev libjansson-dev libudunits2-dev libmd-dev check
+  libpng-dev zlib1g-dev libcairo2-dev libpango1.0-dev libjansson-dev libudunits2-dev libmd-dev check
   fonts-dejavu-core curl jq sqlite3
 )
 test_packages=(chromium calculix-ccx python3 python3-jsonschema procps libmumps-seq-dev)

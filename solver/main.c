@@ -36,7 +36,7 @@ static const char usage[] =
     "usage: pneulab-solve [--out DIR] [--events FILE] [--threads N] [--deck FILE] [--verbose] "
     "JOB.json\n"
     "  JOB.json        job document; - reads standard input\n"
-    "  --out DIR       write surface.json and surface.vtu there; made when missing\n"
+    "  --out DIR       write fields, tables and a CalculiX deck there; made when missing\n"
     "  --events FILE   append progress as JSON lines\n"
     "  --threads N     threads of the dense linear algebra (default 1)\n"
     "  --deck FILE     write the problem as a CalculiX deck instead of solving it\n"

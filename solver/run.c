@@ -56,7 +56,8 @@ static enum status prepare(struct run *run, struct error *error) {
   if (!run->result || state_create(run->model, &run->state) != STATUS_OK) {
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the result");
   }
-  return STATUS_OK;
+  const char *directory = run->options->out_dir;
+  return directory ? result_export(run->result, directory, error) : STATUS_OK;
 }
 
 static enum status solve(struct run *run, json_t **document, enum status *ending,
@@ -71,7 +72,7 @@ static enum status solve(struct run *run, json_t **document, enum status *ending
   struct error end = {0};
   *ending = path_follow(run->solver, &path, &run->state, &end);
   if (run->options->out_dir) {
-    status = result_write_fields(run->result, run->options->out_dir, error);
+    status = result_write_files(run->result, run->options->out_dir, error);
   }
   if (status == STATUS_OK) {
     *document =

@@ -32,6 +32,7 @@ void result_destroy(struct result *r) {
   free(r->sample);
   json_decref(r->midlines);
   json_decref(r->artifacts);
+  export_destroy(r->export);
   state_release(&r->first);
   state_release(&r->last);
   free(r);
@@ -104,9 +105,10 @@ enum status result_add(struct result *r, const struct path_point *point) {
   }
   state_copy(m, &r->last, state);
   r->sample_count++;
-  return json_array_append_new(r->midlines, midline(r, state->u, point->pressure)) == 0
-             ? STATUS_OK
-             : STATUS_NO_MEMORY;
+  if (json_array_append_new(r->midlines, midline(r, state->u, point->pressure)) != 0) {
+    return STATUS_NO_MEMORY;
+  }
+  return r->export ? export_add(r->export, state, point->pressure, &r->failure) : STATUS_OK;
 }
 
 static void set_real(json_t *object, const char *key, double value) {
@@ -129,6 +131,14 @@ static json_t *sample_object(const struct sample *s) {
   set_real(o, "max_stretch", s->max_stretch);
   json_object_set_new(o, "newton_iterations", json_integer(s->iterations));
   return o;
+}
+
+json_t *result_samples(const struct result *r) {
+  json_t *samples = json_array();
+  for (size_t i = 0; i < r->sample_count; i++) {
+    json_array_append_new(samples, sample_object(&r->sample[i]));
+  }
+  return samples;
 }
 
 /* Fit of the bending angle (deg) against the pressure (kPa). */
@@ -209,15 +219,11 @@ static json_t *statistics_object(const struct result *r, double wall_s, double c
 json_t *result_document(struct result *r, enum status status, const struct error *error,
                         double wall_s, double cpu_s) {
   bool good = status == STATUS_OK;
-  json_t *samples = json_array();
-  for (size_t i = 0; i < r->sample_count; i++) {
-    json_array_append_new(samples, sample_object(&r->sample[i]));
-  }
   return json_pack("{s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:O, s:o, s:o, s:O, s:o, s:{s:s, s:s}}",
                    "status", good ? "succeeded" : "diverged", "reason",
                    good ? "" : status_word(status), "message", good ? "" : error->message, "kind",
                    "response", "name", r->spec->name, "metrics", metrics_object(r), "samples",
-                   samples, "midlines", r->midlines, "fit", fit_object(r), "warnings",
+                   result_samples(r), "midlines", r->midlines, "fit", fit_object(r), "warnings",
                    result_warnings(r), "artifacts", r->artifacts, "statistics",
                    statistics_object(r, wall_s, cpu_s), "provenance", "version", PNEULAB_VERSION,
                    "spec_hash", r->spec->hash);

@@ -15,12 +15,18 @@ struct result *result_create(const struct job_spec *spec, struct fe_model *model
 void result_destroy(struct result *result);
 
 /* Takes in one converged state: recorded ones become samples and midlines, all of them serve to
- * find the onset of contact. STATUS_OK or STATUS_NO_MEMORY. */
+ * find the onset of contact. STATUS_OK, STATUS_NO_MEMORY, or STATUS_IO when its files cannot be
+ * written. */
 enum status result_add(struct result *result, const struct path_point *point);
 
-/* Writes surface.json and surface.vtu of the first and the last recorded state into `directory`
- * and lists them as artifacts. */
-enum status result_write_fields(struct result *result, const char *directory, struct error *error);
+/* Has the fields of every recorded state to come written into `directory`, which is there and
+ * outlives the result. STATUS_NO_MEMORY. */
+enum status result_export(struct result *result, const char *directory, struct error *error);
+
+/* After result_export, at the end of the path: writes surface.json, the tables and the deck into
+ * the same directory and lists all files as artifacts. Also returns the failure that ended the
+ * path when files could not be written on the way: STATUS_IO or STATUS_NO_MEMORY. */
+enum status result_write_files(struct result *result, const char *directory, struct error *error);
 
 /* The document, a new reference; `status` and `error` tell how the path ended. wall_s and cpu_s
  * are those of the whole run. NULL when memory runs out. */

@@ -1,10 +1,8 @@
 /* Files and warnings that go with a result. */
-#include <errno.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include "solver/job/material.h"
+#include "solver/post/output.h"
 #include "solver/post/result_internal.h"
 #include "solver/post/skin.h"
 
@@ -45,7 +43,7 @@ json_t *result_warnings(const struct result *r) {
 
 /* surface.json: the outer surface in the first and the last recorded state. */
 static enum status write_json(struct result *r, const double *stretch_first,
-                              const double *stretch_last, const char *path, struct error *error) {
+                              const double *stretch_last, FILE *file, struct error *error) {
   const struct mesh *mesh = r->model->mesh;
   struct skin skin;
   enum status status = skin_create(mesh, false, &skin, error);
@@ -60,51 +58,56 @@ static enum status write_json(struct result *r, const double *stretch_first,
                                              r->sample[r->sample_count - 1].pressure));
   }
   json_t *document = json_pack("{s:o, s:o}", "quads", skin_quads(&skin), "states", states);
-  if (!document || json_dump_file(document, path, JSON_COMPACT | JSON_REAL_PRECISION(8)) != 0) {
-    status = error_set(error, STATUS_IO, NULL, "writing %s failed: %s", path, strerror(errno));
+  if (!document || json_dumpf(document, file, JSON_COMPACT | JSON_REAL_PRECISION(8)) != 0) {
+    status = error_set(error, STATUS_IO, NULL, "surface.json could not be written");
   }
   json_decref(document);
   skin_release(&skin);
   return status;
 }
 
-static enum status write_vtu(struct result *r, const double *stretch, const char *path,
-                             struct error *error) {
-  struct skin skin;
-  enum status status = skin_create(r->model->mesh, true, &skin, error);
-  if (status == STATUS_OK) {
-    status = skin_write_vtu(r->model->mesh, &skin, r->last.u, stretch, path, error);
-    skin_release(&skin);
-  }
-  return status;
+enum status result_export(struct result *r, const char *directory, struct error *error) {
+  return export_create(r->spec, r->model, directory, &r->export, error);
 }
 
-enum status result_write_fields(struct result *r, const char *directory, struct error *error) {
-  if (r->sample_count == 0) {
-    return STATUS_OK;
-  }
-  char path[4096];
+/* surface.json into `directory`, and its name into the list. */
+static enum status write_surface(struct result *r, const char *directory, struct error *error) {
   size_t nodes = (size_t)r->model->mesh->node_count;
   double *first = malloc(sizeof *first * nodes), *last = malloc(sizeof *last * nodes);
-  enum status status = STATUS_OK;
+  struct output output;
+  enum status status = STATUS_NO_MEMORY;
   if (!first || !last || shape_stretch(r->model, r->first.u, first) < 0 ||
       shape_stretch(r->model, r->last.u, last) < 0) {
-    status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the fields");
+    error_set(error, status, NULL, "no memory for the fields");
     goto done;
   }
-  snprintf(path, sizeof path, "%s/surface.json", directory);
-  status = write_json(r, first, last, path, error);
-  if (status != STATUS_OK) {
-    goto done;
-  }
-  json_array_append_new(r->artifacts, json_string("surface.json"));
-  snprintf(path, sizeof path, "%s/surface.vtu", directory);
-  status = write_vtu(r, last, path, error);
+  status = output_open(&output, directory, "surface.json", error);
   if (status == STATUS_OK) {
-    json_array_append_new(r->artifacts, json_string("surface.vtu"));
+    status = write_json(r, first, last, output.file, error);
+    status = output_close(&output, status, error);
+  }
+  if (status == STATUS_OK) {
+    json_array_append_new(r->artifacts, json_string("surface.json"));
   }
 done:
   free(first);
   free(last);
+  return status;
+}
+
+enum status result_write_files(struct result *r, const char *directory, struct error *error) {
+  if (r->failure.status != STATUS_OK) {
+    *error = r->failure;
+    return error->status;
+  }
+  if (r->sample_count == 0) {
+    return STATUS_OK;
+  }
+  enum status status = write_surface(r, directory, error);
+  if (status == STATUS_OK) {
+    json_t *samples = result_samples(r);
+    status = export_finish(r->export, &r->last, samples, r->midlines, r->artifacts, error);
+    json_decref(samples);
+  }
   return status;
 }

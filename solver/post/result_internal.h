@@ -2,6 +2,7 @@
 #ifndef PNEULAB_POST_RESULT_INTERNAL_H
 #define PNEULAB_POST_RESULT_INTERNAL_H
 
+#include "solver/post/export.h"
 #include "solver/post/result.h"
 #include "solver/post/shape.h"
 
@@ -33,7 +34,12 @@ struct result {
   double onset;                /* Pa, negative until contact */
   double penetration;          /* largest over recorded states, m */
   struct fe_state first, last; /* recorded states */
+  struct export *export;       /* NULL: no files are wanted */
+  struct error failure;        /* of writing files on the way */
 };
+
+/* The samples of the document, a new reference. */
+json_t *result_samples(const struct result *result);
 
 /* Warnings of the run as a JSON array, a new reference: unstable material, stretch beyond the
  * fit, overlapping chambers. */

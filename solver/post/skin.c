@@ -1,9 +1,8 @@
 #include "solver/post/skin.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
+#include "solver/post/vtu.h"
 
 static bool wanted(const struct mesh_face *face, bool cavities) {
   return face->kind == FACE_OUTER || face->kind == FACE_BASE ||
@@ -129,77 +128,11 @@ json_t *skin_state(const struct mesh *mesh, const struct skin *skin, const doubl
                    "stretch", stretch);
 }
 
-static void write_points(FILE *file, const struct mesh *mesh, const struct skin *skin,
-                         const double *u) {
-  fputs("<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">\n", file);
-  for (int p = 0; p < skin->point_count; p++) {
-    double x[3];
-    skin_position(mesh, skin, u, p, x);
-    fprintf(file, "%.7g %.7g %.7g\n", 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
-  }
-  fputs("</DataArray></Points>\n", file);
-}
-
-static void write_cells(FILE *file, const struct skin *skin) {
-  /* VTK: corners, edge middles, centre; cell type 28 is the biquadratic quadrilateral. */
-  static const int order[2][QUAD9_NODES] = {{0, 6, 8, 2, 3, 7, 5, 1, 4},
-                                            {0, 2, 8, 6, 1, 5, 7, 3, 4}};
-  fputs("<Cells><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">\n", file);
+void skin_connectivity(const struct skin *skin, int32_t *connectivity) {
   for (int f = 0; f < skin->face_count; f++) {
+    const int *order = vtu_order_quad9(skin->inward[f]);
     for (int m = 0; m < QUAD9_NODES; m++) {
-      fprintf(file, "%d%c", skin->face[f][order[skin->inward[f]][m]],
-              m + 1 < QUAD9_NODES ? ' ' : '\n');
+      connectivity[QUAD9_NODES * f + m] = skin->face[f][order[m]];
     }
   }
-  fputs("</DataArray>\n<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">\n", file);
-  for (int f = 1; f <= skin->face_count; f++) {
-    fprintf(file, "%d\n", QUAD9_NODES * f);
-  }
-  fputs("</DataArray>\n<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">\n", file);
-  for (int f = 0; f < skin->face_count; f++) {
-    fputs("28\n", file);
-  }
-  fputs("</DataArray></Cells>\n", file);
-}
-
-static void write_data(FILE *file, const struct mesh *mesh, const struct skin *skin,
-                       const double *u, const double *node_stretch) {
-  fputs("<PointData Vectors=\"displacement\" Scalars=\"stretch\">\n"
-        "<DataArray type=\"Float32\" Name=\"displacement\" NumberOfComponents=\"3\" "
-        "format=\"ascii\">\n",
-        file);
-  for (int p = 0; p < skin->point_count; p++) {
-    double x[3], reference[3];
-    skin_position(mesh, skin, u, p, x);
-    skin_position(mesh, skin, NULL, p, reference);
-    for (int i = 0; i < 3; i++) {
-      fprintf(file, "%.7g%c", 1e3 * (x[i] - reference[i]), i < 2 ? ' ' : '\n');
-    }
-  }
-  fputs("</DataArray>\n<DataArray type=\"Float32\" Name=\"stretch\" format=\"ascii\">\n", file);
-  for (int p = 0; p < skin->point_count; p++) {
-    fprintf(file, "%.6g\n", node_stretch[skin->node[p]]);
-  }
-  fputs("</DataArray></PointData>\n", file);
-}
-
-enum status skin_write_vtu(const struct mesh *mesh, const struct skin *skin, const double *u,
-                           const double *node_stretch, const char *path, struct error *error) {
-  FILE *file = fopen(path, "w");
-  if (!file) {
-    return error_set(error, STATUS_IO, NULL, "cannot write %s: %s", path, strerror(errno));
-  }
-  fprintf(file,
-          "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" "
-          "byte_order=\"LittleEndian\">\n<UnstructuredGrid><Piece NumberOfPoints=\"%d\" "
-          "NumberOfCells=\"%d\">\n",
-          skin->point_count, skin->face_count);
-  write_points(file, mesh, skin, u);
-  write_cells(file, skin);
-  write_data(file, mesh, skin, u, node_stretch);
-  fputs("</Piece></UnstructuredGrid></VTKFile>\n", file);
-  bool failed = ferror(file);
-  failed = fclose(file) != 0 || failed;
-  return failed ? error_set(error, STATUS_IO, NULL, "writing %s failed: %s", path, strerror(errno))
-                : STATUS_OK;
 }

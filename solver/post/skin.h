@@ -1,8 +1,9 @@
-/* The visible surface of the deformed body and its files. */
+/* The visible surface of the deformed body. */
 #ifndef PNEULAB_POST_SKIN_H
 #define PNEULAB_POST_SKIN_H
 
 #include <jansson.h>
+#include <stdint.h>
 #include "solver/fe/model.h"
 
 /* Outer surface of the whole body, mirrored when half of it was modelled. Every 9-node face
@@ -29,9 +30,8 @@ json_t *skin_quads(const struct skin *skin);
 json_t *skin_state(const struct mesh *mesh, const struct skin *skin, const double *u,
                    const double *node_stretch, double pressure);
 
-/* Writes the deformed skin as a VTK unstructured grid of biquadratic quadrilaterals with point
- * data displacement (mm) and stretch. STATUS_IO with the reason when that fails. */
-enum status skin_write_vtu(const struct mesh *mesh, const struct skin *skin, const double *u,
-                           const double *node_stretch, const char *path, struct error *error);
+/* The 9-node faces as cells VTU_QUAD9 with outward normals: point numbers into
+ * connectivity[face_count x 9]. */
+void skin_connectivity(const struct skin *skin, int32_t *connectivity);
 
 #endif
