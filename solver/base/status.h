@@ -16,6 +16,8 @@
   X(IO, "io_error", "reading or writing failed")                                                   \
   X(DIVERGED, "diverged", "the iteration did not converge")                                        \
   X(INVERTED, "inverted_element", "an element turned inside out")                                  \
+  X(CONTACT, "contact_cycling", "the contact did not settle")                                      \
+  X(UNSTABLE, "material_instability", "the material law lost its stability")                       \
   X(STEP_MINIMUM, "step_below_minimum", "the load step fell below its minimum")                    \
   X(LIMIT_POINT, "limit_point", "the load passed a limit point of the equilibrium path")           \
   X(TIMEOUT, "timeout", "the time limit was reached")                                              \

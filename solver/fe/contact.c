@@ -3,103 +3,14 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "solver/fe/contact_internal.h"
+#include "solver/fe/contact_projection.h"
 #include "solver/fe/vec3.h"
 
-/* How far beyond its edge (parent coordinate 1) a master face is continued. */
-static const double xi_limit = 1.6;
-
-enum status contact_init(struct contact *contact, const struct mesh *mesh,
-                         const struct quad9_tables *tables, struct error *error) {
-  *contact = (struct contact){.mesh = mesh, .tables = tables, .pair_count = mesh->facing_count};
-  size_t points = (size_t)mesh->facing_count * QUAD9_POINTS;
-  contact->point = calloc(points + 1, sizeof *contact->point);
-  if (!contact->point) {
-    return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for %zu contact points", points);
-  }
-  for (int p = 0; p < contact->pair_count; p++) {
-    int nodes[QUAD9_NODES];
-    mesh_face_nodes(mesh, &mesh->facing[p].slave, nodes);
-    for (int q = 0; q < QUAD9_POINTS; q++) {
-      double a[3] = {0}, b[3] = {0}, normal[3];
-      for (int m = 0; m < QUAD9_NODES; m++) {
-        for (int i = 0; i < 3; i++) {
-          a[i] += tables->dn[q][0][m] * mesh->x[3 * nodes[m] + i];
-          b[i] += tables->dn[q][1][m] * mesh->x[3 * nodes[m] + i];
-        }
-      }
-      vec3_cross(a, b, normal);
-      struct contact_point *point = &contact->point[QUAD9_POINTS * p + q];
-      point->area = tables->weight[q] * vec3_norm(normal);
-      point->xi[0] = tables->point[q][0];
-      point->xi[1] = tables->point[q][1];
-    }
-  }
-  return STATUS_OK;
-}
-
-void contact_release(struct contact *contact) {
-  free(contact->point);
-  *contact = (struct contact){0};
-}
-
-void contact_nodes(const struct contact *contact, int pair, int nodes[CONTACT_NODES]) {
-  const struct mesh_facing *facing = &contact->mesh->facing[pair];
-  mesh_face_nodes(contact->mesh, &facing->slave, nodes);
-  mesh_face_nodes(contact->mesh, &facing->master, nodes + QUAD9_NODES);
-}
-
-/* Closest-point projection onto a master face. */
-struct projection {
-  double n[QUAD9_NODES], dn[2][QUAD9_NODES];
-  double tangent[2][3];
-  double distance[3];     /* slave point - master point */
-  double curvature[3][3]; /* second derivatives of the master point: ss, tt, st */
-  double c11, c12, c22;   /* Hessian of |distance|^2 / 2 in the parent coordinates */
-};
-
-static void evaluate_projection(double master[][3], const double slave[3], const double xi[2],
-                                struct projection *p) {
-  double d2n[3][QUAD9_NODES];
-  quad9_shape(xi[0], xi[1], p->n, p->dn, d2n);
-  memset(p->tangent, 0, sizeof p->tangent);
-  memset(p->curvature, 0, sizeof p->curvature);
-  memcpy(p->distance, slave, sizeof p->distance);
-  for (int m = 0; m < QUAD9_NODES; m++) {
-    for (int i = 0; i < 3; i++) {
-      double x = master[m][i];
-      p->distance[i] -= p->n[m] * x;
-      p->tangent[0][i] += p->dn[0][m] * x;
-      p->tangent[1][i] += p->dn[1][m] * x;
-      p->curvature[0][i] += d2n[0][m] * x;
-      p->curvature[1][i] += d2n[1][m] * x;
-      p->curvature[2][i] += d2n[2][m] * x;
-    }
-  }
-  const double *a = p->tangent[0], *b = p->tangent[1], *d = p->distance;
-  p->c11 = vec3_dot(a, a) - vec3_dot(d, p->curvature[0]);
-  p->c22 = vec3_dot(b, b) - vec3_dot(d, p->curvature[1]);
-  p->c12 = vec3_dot(a, b) - vec3_dot(d, p->curvature[2]);
-}
-
-/* Newton iteration for the closest point, started at xi. False when it leaves the face. */
-static bool project(double master[][3], const double slave[3], double xi[2], struct projection *p) {
-  for (int iteration = 0; iteration < 12; iteration++) {
-    evaluate_projection(master, slave, xi, p);
-    double determinant = p->c11 * p->c22 - p->c12 * p->c12;
-    if (!(determinant > 0)) {
-      return false;
-    }
-    double r1 = vec3_dot(p->distance, p->tangent[0]), r2 = vec3_dot(p->distance, p->tangent[1]);
-    double d1 = (p->c22 * r1 - p->c12 * r2) / determinant;
-    double d2 = (p->c11 * r2 - p->c12 * r1) / determinant;
-    if (fabs(d1) + fabs(d2) < 1e-10) {
-      return fabs(xi[0]) < xi_limit && fabs(xi[1]) < xi_limit;
-    }
-    xi[0] = fmax(-2, fmin(2, xi[0] + d1));
-    xi[1] = fmax(-2, fmin(2, xi[1] + d2));
-  }
-  return false;
-}
+/* How far beyond its edge (parent coordinate 1) a master face is continued: far for the two sides
+ * of a gap, which are flat there, hardly for faces that have met by bending. */
+static const double xi_limit_facing = 1.6;
+static const double xi_limit = 1.05;
 
 /* The smoothed law of x = g - lambda/eps: traction and its negative derivative. */
 static double contact_law(double eps, double delta, double x, double *slope) {
@@ -116,8 +27,8 @@ static double contact_law(double eps, double delta, double x, double *slope) {
 }
 
 /* Traction of a point at its gap, with its gain, and the negative derivative to the gap. */
-static double point_traction(const struct contact *contact, const struct contact_point *point,
-                             double *slope) {
+double contact_traction(const struct contact *contact, const struct contact_point *point,
+                        double *slope) {
   double x = point->gap - point->lambda / contact->stiffness;
   double traction = contact_law(contact->stiffness, contact->smoothing, x, slope);
   if (point->gain > 0) {
@@ -129,11 +40,11 @@ static double point_traction(const struct contact *contact, const struct contact
 
 void contact_follow(struct contact *contact, double cap) {
   double eps = contact->stiffness, slope;
-  for (int i = 0; i < contact->pair_count * QUAD9_POINTS; i++) {
+  for (int i = 0; i < contact->point_count; i++) {
     struct contact_point *point = &contact->point[i];
     point->gain = 0;
     if (cap > 0 && point->valid) {
-      point_traction(contact, point, &slope);
+      contact_traction(contact, point, &slope);
       point->gain = slope < eps * (1 - 1 / cap) ? 1 / (1 - slope / eps) : cap;
     }
   }
@@ -190,39 +101,37 @@ static void add_tangent(const struct projection *p, const double c[CONTACT_NODES
 static void find_gap(const struct contact *contact, int pair, int q, double x[CONTACT_NODES][3],
                      struct projection *p, struct contact_point *point, double normal[3]) {
   const double *n = contact->tables->n[q];
-  double slave[3] = {0};
+  double slave[3] = {0}, xi[2] = {point->xi[0], point->xi[1]};
+  double limit = pair < contact->mesh->facing_count ? xi_limit_facing : xi_limit;
   for (int m = 0; m < QUAD9_NODES; m++) {
     for (int i = 0; i < 3; i++) {
       slave[i] += n[m] * x[m][i];
     }
   }
-  double xi[2] = {point->xi[0], point->xi[1]};
-  point->valid = project(x + QUAD9_NODES, slave, xi, p);
   point->traction = 0;
-  if (!point->valid) {
-    return;
+  point->valid =
+      projection_find(x + QUAD9_NODES, slave, xi, p) && fabs(xi[0]) < limit && fabs(xi[1]) < limit;
+  if (point->valid) {
+    memcpy(point->xi, xi, sizeof xi);
+    point->gap = projection_gap(p, contact->face[contact->pair[pair].master].face.side, normal);
   }
-  memcpy(point->xi, xi, sizeof xi);
-  vec3_cross(p->tangent[0], p->tangent[1], normal);
-  double length = vec3_norm(normal) * contact->mesh->facing[pair].master.side;
-  for (int i = 0; i < 3; i++) {
-    normal[i] /= length;
-  }
-  point->gap = vec3_dot(p->distance, normal);
 }
 
 bool contact_evaluate(struct contact *contact, int pair, double x[CONTACT_NODES][3],
                       double r[CONTACT_DOFS], double *packed) {
   bool touched = false;
   for (int q = 0; q < QUAD9_POINTS; q++) {
-    struct contact_point *point = &contact->point[QUAD9_POINTS * pair + q];
+    struct contact_point *point = &contact->point[QUAD9_POINTS * contact->pair[pair].slave + q];
     struct projection p;
     double normal[3], slope;
+    if (point->pair != pair) {
+      continue;
+    }
     find_gap(contact, pair, q, x, &p, point, normal);
     if (!point->valid) {
       continue;
     }
-    point->traction = point_traction(contact, point, &slope);
+    point->traction = contact_traction(contact, point, &slope);
     if (slope <= 0) {
       continue;
     }
@@ -249,39 +158,41 @@ bool contact_evaluate(struct contact *contact, int pair, double x[CONTACT_NODES]
   return touched;
 }
 
-struct contact_summary contact_summarise(const struct contact *contact) {
-  struct contact_summary summary = {.min_gap = INFINITY};
-  for (int i = 0; i < contact->pair_count * QUAD9_POINTS; i++) {
-    const struct contact_point *point = &contact->point[i];
-    if (point->valid) {
-      summary.min_gap = fmin(summary.min_gap, point->gap);
-      summary.active += point->traction > 0;
+bool contact_plane_evaluate(struct contact *contact, int plane, int face, double x[QUAD9_NODES][3],
+                            double r[3 * QUAD9_NODES], double stiffness[QUAD9_NODES][QUAD9_NODES]) {
+  const struct contact_plane *k = &contact->plane[plane];
+  int first = QUAD9_POINTS * (contact->face_count * (1 + plane) + face);
+  double height[QUAD9_NODES];
+  bool touched = false;
+  for (int m = 0; m < QUAD9_NODES; m++) {
+    height[m] = vec3_dot(k->normal, x[m]) - vec3_dot(k->normal, k->point);
+  }
+  for (int q = 0; q < QUAD9_POINTS; q++) {
+    const double *n = contact->tables->n[q];
+    struct contact_point *point = &contact->point[first + q];
+    double slope;
+    point->gap = 0;
+    for (int m = 0; m < QUAD9_NODES; m++) {
+      point->gap += n[m] * height[m];
+    }
+    point->valid = true;
+    point->traction = contact_traction(contact, point, &slope);
+    if (slope <= 0) {
+      continue;
+    }
+    if (!touched) {
+      memset(r, 0, 3 * QUAD9_NODES * sizeof *r);
+      memset(stiffness, 0, QUAD9_NODES * sizeof *stiffness);
+      touched = true;
+    }
+    for (int a = 0; a < QUAD9_NODES; a++) {
+      for (int i = 0; i < 3; i++) {
+        r[3 * a + i] -= point->area * point->traction * n[a] * k->normal[i];
+      }
+      for (int b = 0; b < QUAD9_NODES; b++) {
+        stiffness[a][b] += point->area * slope * n[a] * n[b];
+      }
     }
   }
-  return summary;
-}
-
-/* Aitken's factor for the next update, from this and the last t - lambda of all points. */
-static double aitken_factor(const struct contact *contact, double last_factor) {
-  double product = 0, square = 0;
-  for (int i = 0; i < contact->pair_count * QUAD9_POINTS; i++) {
-    const struct contact_point *point = &contact->point[i];
-    double difference = point->traction - point->lambda - point->change;
-    product += point->change * difference;
-    square += difference * difference;
-  }
-  double factor = square > 0 ? -last_factor * product / square : 1;
-  return fmax(1, fmin(10, factor));
-}
-
-double contact_update_multipliers(struct contact *contact, double *relaxation) {
-  double largest = 0;
-  *relaxation = *relaxation > 0 ? aitken_factor(contact, *relaxation) : 1;
-  for (int i = 0; i < contact->pair_count * QUAD9_POINTS; i++) {
-    struct contact_point *point = &contact->point[i];
-    point->change = point->traction - point->lambda;
-    largest = fmax(largest, fabs(point->change));
-    point->lambda = fmax(0, point->lambda + *relaxation * point->change);
-  }
-  return largest;
+  return touched;
 }

@@ -40,8 +40,7 @@ enum status equilibrium_create(struct fe_model *model, struct equilibrium **out,
   s->retraction = retraction_create(model->mesh);
   s->step = calloc((size_t)model->dof_count + 1, sizeof *s->step);
   s->chord = calloc((size_t)model->dof_count + 1, sizeof *s->chord);
-  s->lambda_step =
-      calloc((size_t)model->contact.pair_count * QUAD9_POINTS + 1, sizeof *s->lambda_step);
+  s->lambda_step = calloc((size_t)model->contact.point_count + 1, sizeof *s->lambda_step);
   s->increment = calloc(3 * (size_t)model->mesh->node_count, sizeof *s->increment);
   if (!s->retraction || !s->step || !s->chord || !s->increment || !s->lambda_step ||
       state_create(model, &s->saved) != STATUS_OK) {
@@ -233,6 +232,17 @@ static enum status predict(struct equilibrium *s, const struct fe_load *load,
   return converged ? STATUS_OK : STATUS_DIVERGED;
 }
 
+/* Finds the partners of the contact at the state that has been reached, with their tractions. A
+ * state in which a part of the body has passed into another is none. */
+static enum status meet(struct equilibrium *s, const struct fe_load *load, struct fe_state *state) {
+  struct fe_model *m = s->model;
+  enum status status = model_search_contact(m, state);
+  if (status == STATUS_OK && contact_intrusion(&m->contact) > 0.25 * m->mesh->wall_thickness) {
+    status = STATUS_CONTACT;
+  }
+  return status == STATUS_OK && m->pattern_stale ? model_evaluate(m, state, load, false) : status;
+}
+
 /* Raises the contact multipliers to the tractions until they settle; the factor stays frozen
  * while that contracts. */
 static enum status augment(struct equilibrium *s, const struct fe_load *load,
@@ -240,6 +250,10 @@ static enum status augment(struct equilibrium *s, const struct fe_load *load,
   struct fe_model *m = s->model;
   double relaxation = 0;
   for (int k = 0; k < AUGMENTATIONS; k++) {
+    enum status status = meet(s, load, state);
+    if (status != STATUS_OK) {
+      return status;
+    }
     double change = contact_update_multipliers(&m->contact, &relaxation);
     if (s->verbose) {
       fprintf(stderr, "    augmentation %d: change %.3e Pa, gap %.3e\n", k, change,
@@ -248,7 +262,7 @@ static enum status augment(struct equilibrium *s, const struct fe_load *load,
     if (change < s->options.traction_tolerance) {
       break;
     }
-    enum status status = model_evaluate(m, state, load, false);
+    status = model_evaluate(m, state, load, false);
     if (status == STATUS_OK && polish(s, load, state, INFINITY, 1)) {
       continue;
     }
@@ -263,7 +277,7 @@ static enum status augment(struct equilibrium *s, const struct fe_load *load,
 /* Multipliers to start from: those of the state, carried on at the rate of the last step. */
 static void start_multipliers(struct equilibrium *s, const struct fe_state *state, double ratio) {
   struct contact *contact = &s->model->contact;
-  for (int i = 0; i < contact->pair_count * QUAD9_POINTS; i++) {
+  for (int i = 0; i < contact->point_count; i++) {
     double change = state->lambda[i] > 0 ? ratio * s->lambda_step[i] : 0;
     contact->point[i].lambda = fmax(0, state->lambda[i] + change);
   }
@@ -272,7 +286,7 @@ static void start_multipliers(struct equilibrium *s, const struct fe_state *stat
 /* The state takes over the multipliers of the contact. */
 static void keep_multipliers(struct equilibrium *s, struct fe_state *state) {
   const struct contact *contact = &s->model->contact;
-  for (int i = 0; i < contact->pair_count * QUAD9_POINTS; i++) {
+  for (int i = 0; i < contact->point_count; i++) {
     s->lambda_step[i] = contact->point[i].lambda - state->lambda[i];
     state->lambda[i] = contact->point[i].lambda;
   }
@@ -293,7 +307,7 @@ enum status equilibrium_solve(struct equilibrium *s, const struct fe_load *load,
   if (status != STATUS_OK) {
     status = newton(s, load, previous_pressure, state, iterations);
   }
-  if (status == STATUS_OK && s->model->use_contact) {
+  if (status == STATUS_OK && (s->model->use_contact || s->model->contact.plane_count > 0)) {
     status = augment(s, load, state, iterations);
   }
   keep_multipliers(s, state);

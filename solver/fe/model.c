@@ -1,7 +1,8 @@
-#include "solver/fe/model.h"
+#include "solver/fe/model_internal.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include "solver/fe/vec3.h"
 
 static enum status fill_geometry(struct fe_model *m, struct error *error) {
   const struct mesh *mesh = m->mesh;
@@ -46,18 +47,9 @@ static void number_unknowns(struct fe_model *m) {
   }
 }
 
-static enum status analyse(struct fe_model *m, struct error *error) {
+/* Cliques: all elements, then the pairs of the contact. */
+static void list_cliques(const struct fe_model *m, int pairs, int *start, int *dofs) {
   const struct mesh *mesh = m->mesh;
-  int pairs = m->use_contact ? m->contact.pair_count : 0;
-  int cliques = mesh->element_count + pairs;
-  size_t entries = (size_t)mesh->element_count * ELEMENT_DOFS + (size_t)pairs * CONTACT_DOFS;
-  int *start = malloc(sizeof *start * ((size_t)cliques + 1));
-  int *dofs = malloc(sizeof *dofs * (entries + 1));
-  enum status status;
-  if (!start || !dofs) {
-    status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for %d cliques", cliques);
-    goto done;
-  }
   int next = 0, clique = 0;
   start[0] = 0;
   for (int e = 0; e < mesh->element_count; e++) {
@@ -76,8 +68,36 @@ static enum status analyse(struct fe_model *m, struct error *error) {
     }
     start[++clique] = next;
   }
+}
+
+/* Room for the values of the pairs' cliques. */
+static bool allocate_cliques(struct fe_model *m, size_t elements, size_t pairs) {
+  double *value = realloc(m->contact_value, sizeof *value * (pairs * CONTACT_PACKED + 1));
+  m->contact_value = value ? value : m->contact_value;
+  const double **clique = realloc(m->clique_value, sizeof *clique * (elements + pairs + 1));
+  m->clique_value = clique ? clique : m->clique_value;
+  return value && clique;
+}
+
+enum status model_analyse(struct fe_model *m, struct error *error) {
+  const struct mesh *mesh = m->mesh;
+  int pairs = m->use_contact ? m->contact.pair_count : 0;
+  int cliques = mesh->element_count + pairs;
+  size_t entries = (size_t)mesh->element_count * ELEMENT_DOFS + (size_t)pairs * CONTACT_DOFS;
+  int *start = malloc(sizeof *start * ((size_t)cliques + 1));
+  int *dofs = malloc(sizeof *dofs * (entries + 1));
+  enum status status;
+  if (!start || !dofs || !allocate_cliques(m, (size_t)mesh->element_count, (size_t)pairs)) {
+    status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for %d cliques", cliques);
+    goto done;
+  }
+  list_cliques(m, pairs, start, dofs);
+  ldlt_destroy(m->ldlt);
+  m->ldlt = NULL;
   struct ldlt_pattern pattern = {m->dof_count, mesh->node_count, m->node_of, cliques, start, dofs};
   status = ldlt_create(&pattern, &m->ldlt, error);
+  m->pattern_stale = status != STATUS_OK;
+  m->statistics.analyses++;
 done:
   free(start);
   free(dofs);
@@ -86,7 +106,7 @@ done:
 
 static bool allocate(struct fe_model *m) {
   size_t nodes = (size_t)m->mesh->node_count, elements = (size_t)m->mesh->element_count;
-  size_t faces = (size_t)m->mesh->face_count, pairs = (size_t)m->contact.pair_count;
+  size_t faces = (size_t)m->mesh->face_count;
   m->geometry = calloc(elements, sizeof *m->geometry);
   m->internal = calloc(elements, sizeof *m->internal);
   m->work = calloc(1, sizeof *m->work);
@@ -97,11 +117,8 @@ static bool allocate(struct fe_model *m) {
   m->node_of = calloc(3 * nodes, sizeof *m->node_of);
   m->residual = calloc(3 * nodes, sizeof *m->residual);
   m->element_value = calloc(elements * ELEMENT_PACKED, sizeof *m->element_value);
-  m->contact_value = calloc(pairs * CONTACT_PACKED + 1, sizeof *m->contact_value);
-  m->clique_value = calloc(elements + pairs + 1, sizeof *m->clique_value);
   return m->geometry && m->internal && m->work && m->cavity_start && m->cavity_face &&
-         m->dead_load && m->equation && m->node_of && m->residual && m->element_value &&
-         m->contact_value && m->clique_value;
+         m->dead_load && m->equation && m->node_of && m->residual && m->element_value;
 }
 
 enum status model_create(const struct mesh *mesh, const struct material_spec *material,
@@ -115,7 +132,7 @@ enum status model_create(const struct mesh *mesh, const struct material_spec *ma
   m->material = *material;
   double mu = material_shear_modulus(material);
   m->bulk_modulus = material->bulk_ratio * mu;
-  m->use_contact = use_contact && mesh->facing_count > 0;
+  m->use_contact = use_contact;
   hex27_tables_fill(&m->hex27);
   quad9_tables_fill(&m->quad9);
   enum status status = contact_init(&m->contact, mesh, &m->quad9, error);
@@ -127,12 +144,18 @@ enum status model_create(const struct mesh *mesh, const struct material_spec *ma
     /* Soft against the walls, so that a step into contact does not rebound; the multipliers
      * remove the penetration that this leaves. */
     m->contact.stiffness = 1.2 * mu / mesh->wall_thickness;
-    m->contact.smoothing = 0.01 * mesh->gap_width;
+    double gap = mesh->gap_width > 0 ? mesh->gap_width : mesh->wall_thickness;
+    m->contact.smoothing = 0.01 * fmin(gap, mesh->wall_thickness);
+    m->contact.reach = 2 * mesh->wall_thickness;
     number_unknowns(m);
     status = fill_geometry(m, error);
   }
+  if (status == STATUS_OK && use_contact && mesh->half) {
+    const struct contact_plane mirror = {{0, 0, 0}, {0, 1, 0}, true};
+    status = contact_add_plane(&m->contact, &mirror);
+  }
   if (status == STATUS_OK) {
-    status = analyse(m, error);
+    status = model_analyse(m, error);
   }
   if (status != STATUS_OK) {
     model_destroy(m);
@@ -180,10 +203,30 @@ void model_add_gravity(struct fe_model *m, const double gravity[3]) {
   }
 }
 
+enum status model_add_plane(struct fe_model *m, const double point[3], const double normal[3],
+                            struct error *error) {
+  struct contact_plane plane = {
+      {point[0], point[1], point[2]}, {normal[0], normal[1], normal[2]}, false};
+  double length = vec3_norm(normal);
+  for (int n = 0; n < m->mesh->node_count; n++) {
+    const double *x = m->mesh->x + 3 * (size_t)n;
+    if (vec3_dot(x, normal) - vec3_dot(point, normal) < -1e-6 * length * m->mesh->wall_thickness) {
+      return error_set(error, STATUS_GEOMETRY, NULL,
+                       "the undeformed body reaches behind a plane of contact, at x = %.4g mm, "
+                       "y = %.4g mm, z = %.4g mm",
+                       1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
+    }
+  }
+  enum status status = contact_add_plane(&m->contact, &plane);
+  return status == STATUS_OK
+             ? STATUS_OK
+             : error_set(error, status, NULL, "more than %d planes of contact", CONTACT_PLANES - 1);
+}
+
 enum status state_create(const struct fe_model *m, struct fe_state *state) {
   state->u = calloc(3 * (size_t)m->mesh->node_count, sizeof *state->u);
   state->p = calloc(ELEMENT_PRESSURES * (size_t)m->mesh->element_count, sizeof *state->p);
-  state->lambda = calloc((size_t)m->contact.pair_count * QUAD9_POINTS + 1, sizeof *state->lambda);
+  state->lambda = calloc((size_t)m->contact.point_count + 1, sizeof *state->lambda);
   if (!state->u || !state->p || !state->lambda) {
     state_release(state);
     return STATUS_NO_MEMORY;
@@ -201,8 +244,7 @@ void state_release(struct fe_state *state) {
 void state_copy(const struct fe_model *m, struct fe_state *to, const struct fe_state *from) {
   memcpy(to->u, from->u, sizeof *to->u * 3 * (size_t)m->mesh->node_count);
   memcpy(to->p, from->p, sizeof *to->p * ELEMENT_PRESSURES * (size_t)m->mesh->element_count);
-  memcpy(to->lambda, from->lambda,
-         sizeof *to->lambda * (size_t)m->contact.pair_count * QUAD9_POINTS);
+  memcpy(to->lambda, from->lambda, sizeof *to->lambda * (size_t)m->contact.point_count);
 }
 
 void model_gather(const struct fe_model *m, const double *u, int element,

@@ -23,6 +23,7 @@ struct fe_load {
 struct fe_statistics {
   int assemblies, residuals, factorizations, solves, newton_iterations;
   double assembly_s, residual_s, factor_s, solve_s, contact_s;
+  int analyses;
 };
 
 struct fe_model {
@@ -45,13 +46,15 @@ struct fe_model {
   double *element_value; /* packed tangents */
   double *contact_value; /* packed tangents */
   const double **clique_value;
-  bool use_contact;
+  bool use_contact;   /* of the surface with itself */
+  bool pattern_stale; /* the pairs of the contact are not those of the analysis */
   struct contact contact;
   struct ldlt *ldlt;
   struct fe_statistics statistics;
 };
 
-/* Prepares a model of `mesh`, which must outlive it. use_contact makes facing faces touch.
+/* Prepares a model of `mesh`, which must outlive it. use_contact makes the outer surface touch
+ * itself and, in a half model, its mirror image.
  * Fails with STATUS_GEOMETRY for an element that is turned inside out, or NO_MEMORY. The caller
  * owns *out (model_destroy). */
 enum status model_create(const struct mesh *mesh, const struct material_spec *material,
@@ -61,17 +64,28 @@ void model_destroy(struct fe_model *model);
 /* Adds the weight of the body under gravity g (m/s2) to the dead load. */
 void model_add_gravity(struct fe_model *model, const double gravity[3]);
 
+/* Adds a rigid plane through `point` (m) whose normal points to the side of the body, before any
+ * state or solver is made. STATUS_GEOMETRY when the undeformed body lies partly behind it,
+ * STATUS_TOO_LARGE beyond CONTACT_PLANES planes, STATUS_NO_MEMORY. */
+enum status model_add_plane(struct fe_model *model, const double point[3], const double normal[3],
+                            struct error *error);
+
 enum status state_create(const struct fe_model *model, struct fe_state *state);
 void state_release(struct fe_state *state);
 void state_copy(const struct fe_model *model, struct fe_state *to, const struct fe_state *from);
 
-/* Residual at the state into model->residual, and with `tangent` the cliques of the tangent.
- * The multipliers in use are those of model->contact. STATUS_INVERTED when an element has
- * turned inside out: the residual is then not valid. */
+/* Residual at the state into model->residual, and with `tangent` the cliques of the tangent; then
+ * the partners of the contact are found anew. The multipliers in use are those of
+ * model->contact. STATUS_INVERTED when an element has turned inside out: the residual is then not
+ * valid. STATUS_NO_MEMORY. */
 enum status model_evaluate(struct fe_model *model, const struct fe_state *state,
                            const struct fe_load *load, bool tangent);
 
-/* Renews the gaps of all contact points at the state, whether or not the model uses contact. */
+/* Finds the partners of the contact at the state; the next tangent is analysed anew when other
+ * faces may touch. STATUS_NO_MEMORY. */
+enum status model_search_contact(struct fe_model *model, const struct fe_state *state);
+
+/* Renews the gaps of the known pairs at the state, whether or not the model uses contact. */
 void model_update_gaps(struct fe_model *model, const struct fe_state *state);
 
 /* Factorises the last tangent; returns the number of negative pivots. */

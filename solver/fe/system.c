@@ -2,11 +2,10 @@
 #include <math.h>
 #include <string.h>
 #include "solver/base/clock.h"
-#include "solver/fe/model.h"
+#include "solver/fe/model_internal.h"
 #include "solver/fe/pressure.h"
 
-/* Index of entry (r, c), r <= c, in an upper triangle of order n packed by rows. */
-static size_t packed_index(int n, int r, int c) {
+size_t model_packed_index(int n, int r, int c) {
   return (size_t)r * (size_t)(2 * n - r + 1) / 2 + (size_t)(c - r);
 }
 
@@ -41,48 +40,8 @@ static void add_pressure(const struct fe_model *m, const double *u, const struct
   for (int r = 0; r < FACE_DOFS; r++) {
     for (int c = 0; c < FACE_DOFS; c++) {
       if (index[r] <= index[c]) {
-        packed[packed_index(ELEMENT_DOFS, index[r], index[c])] +=
+        packed[model_packed_index(ELEMENT_DOFS, index[r], index[c])] +=
             load->stiffness_pressure * tangent[FACE_DOFS * r + c];
-      }
-    }
-  }
-}
-
-/* Nodes of a contact pair and their current positions. */
-static void pair_positions(const struct fe_model *m, const double *u, int pair,
-                           int nodes[CONTACT_NODES], double x[CONTACT_NODES][3]) {
-  contact_nodes(&m->contact, pair, nodes);
-  for (int a = 0; a < CONTACT_NODES; a++) {
-    for (int i = 0; i < 3; i++) {
-      x[a][i] = m->mesh->x[3 * nodes[a] + i] + u[3 * nodes[a] + i];
-    }
-  }
-}
-
-void model_update_gaps(struct fe_model *m, const struct fe_state *state) {
-  for (int p = 0; p < m->contact.pair_count; p++) {
-    int nodes[CONTACT_NODES];
-    double x[CONTACT_NODES][3], r[CONTACT_DOFS];
-    pair_positions(m, state->u, p, nodes, x);
-    contact_evaluate(&m->contact, p, x, r, NULL);
-  }
-}
-
-static void evaluate_contact(struct fe_model *m, const double *u, bool tangent) {
-  const struct mesh *mesh = m->mesh;
-  for (int p = 0; p < m->contact.pair_count; p++) {
-    int nodes[CONTACT_NODES];
-    double x[CONTACT_NODES][3], r[CONTACT_DOFS];
-    pair_positions(m, u, p, nodes, x);
-    double *packed = m->contact_value + (size_t)p * CONTACT_PACKED;
-    bool touches = contact_evaluate(&m->contact, p, x, r, tangent ? packed : NULL);
-    if (tangent) {
-      m->clique_value[mesh->element_count + p] = touches ? packed : NULL;
-    }
-    for (int d = 0; touches && d < CONTACT_DOFS; d++) {
-      int equation = m->equation[3 * nodes[d / 3] + d % 3];
-      if (equation >= 0) {
-        m->residual[equation] += r[d];
       }
     }
   }
@@ -130,8 +89,8 @@ enum status model_evaluate(struct fe_model *m, const struct fe_state *state,
     }
   }
   double middle = clock_cpu_s();
-  if (status == STATUS_OK && m->use_contact) {
-    evaluate_contact(m, state->u, tangent);
+  if (status == STATUS_OK) {
+    status = model_evaluate_contact(m, state->u, tangent);
   }
   *(tangent ? &m->statistics.assembly_s : &m->statistics.residual_s) += middle - start;
   *(tangent ? &m->statistics.assemblies : &m->statistics.residuals) += 1;
