@@ -38,35 +38,46 @@ static double deformed_area(const struct contact *contact, const int nodes[QUAD9
   return tables->weight[q] * vec3_norm(normal);
 }
 
-static void share_pair(const struct contact *contact, int pair, const double *u,
-                       const struct sums *sums) {
-  int nodes[CONTACT_NODES];
-  contact_nodes(contact, pair, nodes);
-  for (int q = 0; q < QUAD9_POINTS; q++) {
-    const struct contact_point *point = &contact->point[QUAD9_POINTS * pair + q];
+/* Shares the tractions of the points of all faces: layer 0 are those against other faces, layer
+ * 1 + k those against plane k. */
+static void share_layer(const struct contact *contact, int layer, const double *u,
+                        const struct sums *sums) {
+  for (int i = 0; i < QUAD9_POINTS * contact->face_count; i++) {
+    const struct contact_point *point =
+        &contact->point[QUAD9_POINTS * contact->face_count * layer + i];
+    int face = i / QUAD9_POINTS, q = i % QUAD9_POINTS, nodes[QUAD9_NODES];
+    if (!point->valid || (layer == 0 && point->pair < 0)) {
+      continue;
+    }
+    mesh_face_nodes(contact->mesh, &contact->face[face].face, nodes);
     double area = deformed_area(contact, nodes, u, q);
     /* The traction is a force per reference area. */
-    double pressure = point->valid ? point->traction * point->area / area : 0;
+    double pressure = point->traction * point->area / area;
     share(sums, nodes, contact->tables->point[q], area, pressure);
-    if (point->valid) {
-      share(sums, nodes + QUAD9_NODES, point->xi, area, pressure);
+    if (layer == 0) {
+      const struct contact_face *master = &contact->face[contact->pair[point->pair].master];
+      mesh_face_nodes(contact->mesh, &master->face, nodes);
+      share(sums, nodes, point->xi, area, pressure);
     }
   }
 }
 
 enum status contact_field(const struct contact *contact, int node_count, const double *u,
                           double *pressure) {
-  struct sums sums = {pressure, calloc((size_t)node_count + 1, sizeof *sums.weight)};
-  if (!sums.weight) {
+  size_t nodes = (size_t)node_count;
+  double *memory = malloc(2 * sizeof *memory * (nodes + 1));
+  struct sums sums = {memory, memory + nodes};
+  if (!memory) {
     return STATUS_NO_MEMORY;
   }
-  memset(pressure, 0, sizeof *pressure * (size_t)node_count);
-  for (int p = 0; p < contact->pair_count; p++) {
-    share_pair(contact, p, u, &sums);
+  memset(pressure, 0, sizeof *pressure * nodes);
+  for (int layer = 0; layer <= contact->plane_count; layer++) {
+    memset(memory, 0, 2 * sizeof *memory * nodes);
+    share_layer(contact, layer, u, &sums);
+    for (int n = 0; n < node_count; n++) {
+      pressure[n] += sums.weight[n] > 0 ? sums.product[n] / sums.weight[n] : 0;
+    }
   }
-  for (int n = 0; n < node_count; n++) {
-    pressure[n] = sums.weight[n] > 0 ? sums.product[n] / sums.weight[n] : 0;
-  }
-  free(sums.weight);
+  free(memory);
   return STATUS_OK;
 }

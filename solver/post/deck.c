@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { OGDEN_TERMS_MAX = 4, SERENDIPITY_NODES = 20 };
+enum { OGDEN_TERMS_MAX = 3, SERENDIPITY_NODES = 20 };
 
 /* Stands for the compressibility of a volumetric term that the law does not have: it is inverted,
  * so it must not be zero. In 1/MPa. */

@@ -7,7 +7,7 @@
 #include "solver/job/spec.h"
 #include "solver/mesh/mesh.h"
 
-/* Whether the deck's language has the material: all but Ogden with more than four terms. */
+/* Whether the deck's language has the material: all but Ogden with more than three terms. */
 bool deck_knows(const struct material_spec *material);
 
 /* Writes mesh, sets, material, boundary conditions and a static step with the job's pressure
