@@ -5,6 +5,7 @@
 #include "solver/mesh/pneunet.h"
 #include "solver/post/deck.h"
 #include "solver/post/result.h"
+#include "solver/post/result_sensitivity.h"
 
 /* Everything one run owns. */
 struct run {
@@ -15,6 +16,7 @@ struct run {
   struct equilibrium *solver;
   struct fe_state state;
   struct result *result;
+  struct result_sensitivity *sensitivity; /* NULL unless the job asks for derivatives */
 };
 
 static enum status take_point(void *context, const struct path_point *point) {
@@ -26,7 +28,9 @@ static enum status take_point(void *context, const struct path_point *point) {
             to != 0 ? point->pressure / to : 0, 1e-3 * point->pressure);
     fflush(run->options->events);
   }
-  return result_add(run->result, point);
+  enum status status = result_add(run->result, point);
+  return status == STATUS_OK && run->sensitivity ? result_sensitivity_add(run->sensitivity, point)
+                                                 : status;
 }
 
 static bool has_gravity(const struct load_spec *load) {
@@ -57,7 +61,11 @@ static enum status prepare(struct run *run, struct error *error) {
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the result");
   }
   const char *directory = run->options->out_dir;
-  return directory ? result_export(run->result, directory, error) : STATUS_OK;
+  status = directory ? result_export(run->result, directory, error) : STATUS_OK;
+  if (status == STATUS_OK && spec->sensitivity.count > 0) {
+    status = result_sensitivity_create(spec, &run->mesh, &run->sensitivity, error);
+  }
+  return status;
 }
 
 static enum status solve(struct run *run, json_t **document, enum status *ending,
@@ -79,6 +87,8 @@ static enum status solve(struct run *run, json_t **document, enum status *ending
         result_document(run->result, *ending, &end, clock_wall_s() - wall, clock_cpu_s() - cpu);
     if (!*document) {
       status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the result document");
+    } else if (run->sensitivity) {
+      json_object_set_new(*document, "sensitivity", result_sensitivity_block(run->sensitivity));
     }
   }
   return status;
@@ -98,6 +108,7 @@ enum status run_job(const struct job_spec *spec, const struct run_options *optio
   } else {
     status = solve(&run, document, ending, error);
   }
+  result_sensitivity_destroy(run.sensitivity);
   result_destroy(run.result);
   state_release(&run.state);
   equilibrium_destroy(run.solver);

@@ -30,9 +30,17 @@ void reader_copy(char *field, size_t size, const char *text);
 /* Each fills its part of the spec from the actuator or material value. STATUS_OK, or
  * STATUS_INVALID or STATUS_GEOMETRY with the pointer to the member that has to change. */
 enum status reader_pneunet(const struct reader *reader, const json_t *actuator,
-                           struct pneunet_spec *spec);
+                           struct pneunet_given *given, struct pneunet_spec *spec);
 enum status reader_material(const struct reader *reader, const json_t *material,
                             struct material_spec *spec);
+
+/* Fills spec->sensitivity from the value of the key (NULL: no derivatives); the rest of the spec
+ * has been read. STATUS_OK, or STATUS_INVALID for a pointer that names no parameter. */
+enum status reader_sensitivity(const struct reader *reader, const json_t *value,
+                               struct job_spec *spec);
+
+/* Whether the body and its loads are symmetric about y = 0. */
+bool reader_symmetric(const struct job_spec *spec);
 
 /* Whether a body of these dimensions can exist. STATUS_OK, or STATUS_GEOMETRY with the pointer
  * to the dimension that has to change, the reason and the limit. */

@@ -130,6 +130,11 @@ static enum accuracy read_accuracy(const char *word) {
                                      : ACCURACY_STANDARD;
 }
 
+bool reader_symmetric(const struct job_spec *spec) {
+  const struct pneunet_spec *p = &spec->pneunet;
+  return p->taper_left == p->taper_right && spec->load.gravity[1] == 0.0;
+}
+
 /* The document has passed the schema and its defaults are filled in. */
 static enum status read_response(const struct reader *reader, const json_t *document,
                                  struct job_spec *spec) {
@@ -152,10 +157,13 @@ static enum status read_response(const struct reader *reader, const json_t *docu
     status = reader_material(reader, json_object_get(document, "material"), &spec->material);
   }
   if (status == STATUS_OK) {
-    status = reader_pneunet(reader, json_object_get(document, "actuator"), &spec->pneunet);
+    status = reader_pneunet(reader, json_object_get(document, "actuator"), &spec->given,
+                            &spec->pneunet);
   }
-  spec->half_model =
-      spec->pneunet.taper_left == spec->pneunet.taper_right && spec->load.gravity[1] == 0.0;
+  if (status == STATUS_OK) {
+    status = reader_sensitivity(reader, json_object_get(document, "sensitivity"), spec);
+  }
+  spec->half_model = reader_symmetric(spec);
   return status;
 }
 

@@ -47,7 +47,17 @@ struct chamber_run {
 
 enum { CHAMBER_RUNS_MAX = 32, CHAMBERS_MAX = 64 };
 
-/* All lengths in m, angles in rad. x runs from the fixed base, y across (left is +y), z up. */
+/* The dimensions as the job gives them, in m and rad; NAN where it is silent. */
+struct pneunet_given {
+  double length, chamber_length, width, height, height_base, height_tip;
+  double chamber_gap, side_wall, gap_wall, top_wall, bottom_layer;
+  double slit, slit_floor, stem;
+  double channel_width, channel_height, channel_cover;
+  double taper_top, taper_bottom, taper_left, taper_right;
+};
+
+/* What they come to. All lengths in m, angles in rad. x runs from the fixed base, y across (left is
+ * +y), z up. */
 struct pneunet_spec {
   double length;                  /* derived when the job gives chamber_length */
   double cavity_length;           /* axial; length = sum of walls, cavities and gaps */
@@ -84,6 +94,22 @@ struct mesh_spec {
   int gap_wall, cavity, gap, half_width, side_wall, bottom, height, top;
 };
 
+/* One number of a job that derivatives can be taken to. */
+struct job_parameter {
+  char pointer[40]; /* JSON pointer into the job: "/actuator/gap_wall", "/material/C/0" */
+  const char *unit; /* in which results give it: "mm", "deg", "MPa", "kg/m3", "1" */
+  double unit_si;   /* one of that unit in SI */
+  size_t offset;    /* of the number, a double in SI, in struct job_spec */
+};
+
+enum { PARAMETERS_MAX = 40 };
+
+/* What the result is differentiated by. */
+struct sensitivity_spec {
+  int count; /* 0: no derivatives */
+  struct job_parameter parameter[PARAMETERS_MAX];
+};
+
 struct metric_spec {
   double fit_from, fit_to; /* Pa: range of the straight-line fit (sensitivity, R2) */
   double cai_from, cai_to; /* Pa: range of the curvature adaptability index */
@@ -92,11 +118,13 @@ struct metric_spec {
 struct job_spec {
   enum job_kind kind;
   char name[200];
+  struct pneunet_given given; /* what pneunet is derived from */
   struct pneunet_spec pneunet;
   struct material_spec material;
   struct load_spec load;
   struct mesh_spec mesh;
   struct metric_spec metrics;
+  struct sensitivity_spec sensitivity;
   bool contact;
   bool half_model; /* symmetric about y = 0 in geometry and load */
   enum accuracy accuracy;

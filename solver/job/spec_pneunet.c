@@ -1,6 +1,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "solver/job/parameter.h"
 #include "solver/job/reader.h"
 
 static enum status read_chambers(const struct reader *reader, const json_t *chambers,
@@ -34,25 +35,29 @@ static int count_gaps(const struct pneunet_spec *spec) {
   return gaps;
 }
 
-/* length = 2 w + n cavity + gaps (2 w + g) + single walls w, solved for what is not given. */
-static enum status read_length(const struct reader *reader, const json_t *actuator,
-                               struct pneunet_spec *spec) {
+static double otherwise(double given, double value) {
+  return isnan(given) ? value : given;
+}
+
+/* length = 2 w + n cavity + gaps (2 w + g) + single walls w, solved for what is not given. When
+ * both lengths are given, that of the chamber holds. */
+static enum status derive_length(const struct pneunet_given *given, struct pneunet_spec *spec,
+                                 struct error *error) {
   int n = spec->chamber_count;
   int gaps = count_gaps(spec);
   double wall = spec->gap_wall;
   double fixed = 2.0 * wall + gaps * (2.0 * wall + spec->chamber_gap) + (n - 1 - gaps) * wall;
-  double length = reader_member(reader, actuator, "length", "mm", 0.0);
-  double chamber = reader_member(reader, actuator, "chamber_length", "mm", 0.0);
-  if (length == 0.0 && chamber == 0.0) {
-    return error_set(reader->error, STATUS_INVALID, "/actuator",
+  double length = given->length, chamber = given->chamber_length;
+  if (isnan(length) && isnan(chamber)) {
+    return error_set(error, STATUS_INVALID, "/actuator",
                      "the key \"length\" is missing (\"chamber_length\" can take its place); for "
                      "example \"length\": \"118 mm\"");
   }
-  if (chamber == 0.0) {
+  if (isnan(chamber)) {
     spec->length = length;
     spec->cavity_length = (length - fixed) / n;
     if (spec->cavity_length < CAVITY_MINIMUM) {
-      return error_set(reader->error, STATUS_GEOMETRY, "/actuator/length",
+      return error_set(error, STATUS_GEOMETRY, "/actuator/length",
                        "walls and gaps take %.6g mm of the %.6g mm: with %d cavities of 0.1 mm or "
                        "more the length must be at least %.6g mm",
                        fixed * 1e3, length * 1e3, n, (fixed + n * CAVITY_MINIMUM) * 1e3);
@@ -62,31 +67,33 @@ static enum status read_length(const struct reader *reader, const json_t *actuat
   spec->cavity_length = chamber - 2.0 * wall;
   spec->length = fixed + n * spec->cavity_length;
   if (spec->cavity_length < CAVITY_MINIMUM) {
-    return error_set(reader->error, STATUS_GEOMETRY, "/actuator/chamber_length",
+    return error_set(error, STATUS_GEOMETRY, "/actuator/chamber_length",
                      "two walls of %.6g mm leave no cavity of 0.1 mm or more in a chamber of "
                      "%.6g mm: it must be at least %.6g mm long",
                      wall * 1e3, chamber * 1e3, (2.0 * wall + CAVITY_MINIMUM) * 1e3);
   }
-  if (length != 0.0 && fabs(length - spec->length) > 1e-6 * length) {
-    return error_set(reader->error, STATUS_GEOMETRY, "/actuator/chamber_length",
-                     "%d chambers of %.6g mm with their gaps make %.6g mm, but the length is "
-                     "%.6g mm: give only one of \"length\" and \"chamber_length\"",
-                     n, chamber * 1e3, spec->length * 1e3, length * 1e3);
-  }
   return STATUS_OK;
 }
 
-static enum status read_height(const struct reader *reader, const json_t *actuator,
-                               struct pneunet_spec *spec) {
-  const json_t *height = json_object_get(actuator, "height");
-  if (json_is_string(height)) {
-    spec->height_base = spec->height_tip = reader_quantity(reader, height, "mm");
+/* Two lengths have to say the same. */
+static enum status check_lengths(const struct pneunet_given *given, const struct pneunet_spec *spec,
+                                 struct error *error) {
+  if (isnan(given->length) || !(fabs(given->length - spec->length) > 1e-6 * given->length)) {
     return STATUS_OK;
   }
-  spec->height_base = reader_member(reader, height, "base", "mm", 0.0);
-  spec->height_tip = reader_member(reader, height, "tip", "mm", 0.0);
-  if (spec->taper_top != 0.0 || spec->taper_bottom != 0.0) {
-    return error_set(reader->error, STATUS_INVALID,
+  return error_set(error, STATUS_GEOMETRY, "/actuator/chamber_length",
+                   "%d chambers of %.6g mm with their gaps make %.6g mm, but the length is "
+                   "%.6g mm: give only one of \"length\" and \"chamber_length\"",
+                   spec->chamber_count, given->chamber_length * 1e3, spec->length * 1e3,
+                   given->length * 1e3);
+}
+
+static enum status derive_heights(const struct pneunet_given *given, struct pneunet_spec *spec,
+                                  struct error *error) {
+  spec->height_base = otherwise(given->height, given->height_base);
+  spec->height_tip = otherwise(given->height, given->height_tip);
+  if (isnan(given->height) && (spec->taper_top != 0.0 || spec->taper_bottom != 0.0)) {
+    return error_set(error, STATUS_INVALID,
                      spec->taper_top != 0.0 ? "/actuator/taper/top" : "/actuator/taper/bottom",
                      "heights at base and tip already describe the slope: leave out the taper of "
                      "top and bottom, or give one height");
@@ -94,48 +101,80 @@ static enum status read_height(const struct reader *reader, const json_t *actuat
   return STATUS_OK;
 }
 
-static void read_channel(const struct reader *reader, const json_t *actuator,
-                         struct pneunet_spec *spec) {
-  const json_t *channel = json_object_get(actuator, "channel");
-  spec->has_channel = channel != NULL;
-  spec->channel_width = reader_member(reader, channel, "width", "mm", 0.0);
-  spec->channel_height = reader_member(reader, channel, "height", "mm", 0.0);
-  spec->channel_cover = reader_member(reader, channel, "cover", "mm", 0.0);
-}
-
-enum status reader_pneunet(const struct reader *reader, const json_t *actuator,
-                           struct pneunet_spec *spec) {
-  *spec = (struct pneunet_spec){.run_count = 0};
-  spec->width = reader_member(reader, actuator, "width", "mm", 0.0);
-  spec->side_wall = reader_member(reader, actuator, "side_wall", "mm", 0.0);
-  spec->gap_wall = reader_member(reader, actuator, "gap_wall", "mm", spec->side_wall);
-  spec->top_wall = reader_member(reader, actuator, "top_wall", "mm", 0.0);
-  spec->bottom_layer = reader_member(reader, actuator, "bottom_layer", "mm", 0.0);
-  spec->slit = reader_member(reader, actuator, "slit", "mm", 0.0);
-  spec->slit_floor = reader_member(reader, actuator, "slit_floor", "mm", spec->top_wall);
-  read_channel(reader, actuator, spec);
+enum status pneunet_derive(const struct pneunet_given *given, struct pneunet_spec *spec,
+                           struct error *error) {
+  spec->width = given->width;
+  spec->side_wall = given->side_wall;
+  spec->gap_wall = otherwise(given->gap_wall, given->side_wall);
+  spec->top_wall = given->top_wall;
+  spec->bottom_layer = given->bottom_layer;
+  spec->slit = given->slit;
+  spec->slit_floor = otherwise(given->slit_floor, given->top_wall);
+  spec->has_channel = !isnan(given->channel_width);
+  spec->channel_width = otherwise(given->channel_width, 0.0);
+  spec->channel_height = otherwise(given->channel_height, 0.0);
+  spec->channel_cover = otherwise(given->channel_cover, 0.0);
   double stem =
       spec->has_channel ? 0.5 * spec->channel_width + spec->side_wall : 2.0 * spec->side_wall;
-  spec->stem = reader_member(reader, actuator, "stem", "mm", stem);
-  const json_t *taper = json_object_get(actuator, "taper");
-  spec->taper_top = reader_member(reader, taper, "top", "deg", 0.0);
-  spec->taper_bottom = reader_member(reader, taper, "bottom", "deg", 0.0);
-  spec->taper_left = reader_member(reader, taper, "left", "deg", 0.0);
-  spec->taper_right = reader_member(reader, taper, "right", "deg", 0.0);
-  enum status status = read_chambers(reader, json_object_get(actuator, "chambers"), spec);
-  if (status != STATUS_OK) {
-    return status;
-  }
+  spec->stem = otherwise(given->stem, stem);
+  spec->taper_top = otherwise(given->taper_top, 0.0);
+  spec->taper_bottom = otherwise(given->taper_bottom, 0.0);
+  spec->taper_left = otherwise(given->taper_left, 0.0);
+  spec->taper_right = otherwise(given->taper_right, 0.0);
   int gaps = count_gaps(spec);
-  spec->chamber_gap = gaps > 0 ? reader_member(reader, actuator, "chamber_gap", "mm", 0.0) : 0.0;
-  if (gaps > 0 && spec->chamber_gap < 1e-6) {
-    return error_set(reader->error, STATUS_GEOMETRY, "/actuator/chamber_gap",
+  spec->chamber_gap = gaps > 0 ? given->chamber_gap : 0.0;
+  if (gaps > 0 && !(spec->chamber_gap >= 1e-6)) {
+    return error_set(error, STATUS_GEOMETRY, "/actuator/chamber_gap",
                      "chambers of configuration B and C need a gap of at least 0.001 mm: write for "
                      "example \"2 mm\", or use configuration A");
   }
-  status = read_height(reader, actuator, spec);
+  enum status status = derive_heights(given, spec, error);
   if (status == STATUS_OK) {
-    status = read_length(reader, actuator, spec);
+    status = derive_length(given, spec, error);
   }
-  return status == STATUS_OK ? pneunet_check(spec, reader->error) : status;
+  return status == STATUS_OK ? pneunet_check(spec, error) : status;
+}
+
+#define DIMENSION(group, key, unit, member)                                                        \
+  { group, key, unit, offsetof(struct pneunet_given, member) }
+const struct pneunet_dimension pneunet_dimensions[PNEUNET_DIMENSIONS] = {
+    DIMENSION(NULL, "length", "mm", length),
+    DIMENSION(NULL, "chamber_length", "mm", chamber_length),
+    DIMENSION(NULL, "width", "mm", width),
+    DIMENSION(NULL, "height", "mm", height),
+    DIMENSION("height", "base", "mm", height_base),
+    DIMENSION("height", "tip", "mm", height_tip),
+    DIMENSION(NULL, "chamber_gap", "mm", chamber_gap),
+    DIMENSION(NULL, "side_wall", "mm", side_wall),
+    DIMENSION(NULL, "gap_wall", "mm", gap_wall),
+    DIMENSION(NULL, "top_wall", "mm", top_wall),
+    DIMENSION(NULL, "bottom_layer", "mm", bottom_layer),
+    DIMENSION(NULL, "slit", "mm", slit),
+    DIMENSION(NULL, "slit_floor", "mm", slit_floor),
+    DIMENSION(NULL, "stem", "mm", stem),
+    DIMENSION("channel", "width", "mm", channel_width),
+    DIMENSION("channel", "height", "mm", channel_height),
+    DIMENSION("channel", "cover", "mm", channel_cover),
+    DIMENSION("taper", "top", "deg", taper_top),
+    DIMENSION("taper", "bottom", "deg", taper_bottom),
+    DIMENSION("taper", "left", "deg", taper_left),
+    DIMENSION("taper", "right", "deg", taper_right),
+};
+
+enum status reader_pneunet(const struct reader *reader, const json_t *actuator,
+                           struct pneunet_given *given, struct pneunet_spec *spec) {
+  *spec = (struct pneunet_spec){.run_count = 0};
+  for (int d = 0; d < PNEUNET_DIMENSIONS; d++) {
+    const struct pneunet_dimension *dimension = &pneunet_dimensions[d];
+    const json_t *object =
+        dimension->group ? json_object_get(actuator, dimension->group) : actuator;
+    const json_t *member = json_object_get(object, dimension->key);
+    double *value = (double *)((char *)given + dimension->offset);
+    *value = json_is_string(member) ? reader_quantity(reader, member, dimension->unit) : NAN;
+  }
+  enum status status = read_chambers(reader, json_object_get(actuator, "chambers"), spec);
+  if (status == STATUS_OK) {
+    status = pneunet_derive(given, spec, reader->error);
+  }
+  return status == STATUS_OK ? check_lengths(given, spec, reader->error) : status;
 }
