@@ -41,8 +41,12 @@ enum status equilibrium_create(struct fe_model *model, struct equilibrium **out,
   s->step = calloc((size_t)model->dof_count + 1, sizeof *s->step);
   s->chord = calloc((size_t)model->dof_count + 1, sizeof *s->chord);
   s->lambda_step = calloc((size_t)model->contact.point_count + 1, sizeof *s->lambda_step);
+  s->control.normal = calloc((size_t)model->dof_count + 1, sizeof *s->control.normal);
+  s->control.force = calloc((size_t)model->dof_count + 1, sizeof *s->control.force);
+  s->control.response = calloc((size_t)model->dof_count + 1, sizeof *s->control.response);
   s->increment = calloc(3 * (size_t)model->mesh->node_count, sizeof *s->increment);
   if (!s->retraction || !s->step || !s->chord || !s->increment || !s->lambda_step ||
+      !s->control.normal || !s->control.force || !s->control.response ||
       state_create(model, &s->saved) != STATUS_OK) {
     equilibrium_destroy(s);
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the solver");
@@ -61,6 +65,9 @@ void equilibrium_destroy(struct equilibrium *s) {
   free(s->chord);
   free(s->increment);
   free(s->lambda_step);
+  free(s->control.normal);
+  free(s->control.force);
+  free(s->control.response);
   free(s);
 }
 
@@ -79,6 +86,54 @@ static double largest(const struct equilibrium *s, const double *v) {
     most = fmax(most, fabs(v[i]));
   }
   return most;
+}
+
+static double dot(const struct equilibrium *s, const double *a, const double *b) {
+  double sum = 0;
+  for (int i = 0; i < s->model->dof_count; i++) {
+    sum += a[i] * b[i];
+  }
+  return sum;
+}
+
+/* d residual / d load parameter at the state. */
+static void load_force(struct equilibrium *s, const struct fe_state *state, double *force) {
+  struct fe_model *m = s->model;
+  if (!s->control.dead) {
+    model_volume(m, state, force);
+  }
+  for (int d = 0; d < 3 * m->mesh->node_count; d++) {
+    if (m->equation[d] >= 0) {
+      double *f = &force[m->equation[d]];
+      *f = s->control.dead ? -m->dead_load[d] : -*f;
+    }
+  }
+}
+
+static double *load_parameter(const struct equilibrium *s, struct fe_load *load) {
+  return s->control.dead ? &load->dead : &load->pressure;
+}
+
+/* After a factorisation under control: the response to the load parameter. */
+static void renew_response(struct equilibrium *s, const struct fe_state *state) {
+  if (s->control.active) {
+    load_force(s, state, s->control.force);
+    model_solve(s->model, s->control.force, s->control.response);
+  }
+}
+
+/* The correction that belongs to the residual: K^-1 r; under control, together with the change of
+ * the load parameter that keeps it normal to the control's normal. Returns that change. */
+static double correction(struct equilibrium *s, double *step) {
+  model_solve(s->model, s->model->residual, step);
+  if (!s->control.active) {
+    return 0;
+  }
+  double change = -dot(s, s->control.normal, step) / dot(s, s->control.normal, s->control.response);
+  for (int i = 0; i < s->model->dof_count; i++) {
+    step[i] += change * s->control.response[i];
+  }
+  return change;
 }
 
 /* state <- state (+) (-share * correction), pressures recovered alongside. */
@@ -103,21 +158,23 @@ static enum status check_limits(const struct equilibrium *s) {
   return o->deadline_s > 0 && clock_wall_s() > o->deadline_s ? STATUS_TIMEOUT : STATUS_OK;
 }
 
-/* Applies the Newton step, shortened until no element is inverted; the residual is evaluated at
- * the new state. *share is the part applied. */
-static enum status take_step(struct equilibrium *s, const struct fe_load *load,
+/* Applies the Newton step, and `change` to the load parameter, shortened until no element is
+ * inverted; the residual is evaluated at the new state. *share is the part applied. */
+static enum status take_step(struct equilibrium *s, struct fe_load *load, double change,
                              struct fe_state *state, double *share) {
   struct fe_model *m = s->model;
-  double *trial = s->chord;
+  double *trial = s->chord, start = *load_parameter(s, load);
   state_copy(m, &s->saved, state);
   for (int attempt = 0; attempt < BACKTRACKS; attempt++) {
     memcpy(trial, s->step, sizeof *trial * (size_t)m->dof_count);
     apply(s, state, trial, *share);
+    *load_parameter(s, load) = start + *share * change;
     if (model_evaluate(m, state, load, false) == STATUS_OK) {
       return STATUS_OK;
     }
     *share *= 0.4;
     state_copy(m, state, &s->saved);
+    *load_parameter(s, load) = start;
     /* The recovery needs the pressure residuals of this state again. */
     if (model_evaluate(m, state, load, false) != STATUS_OK) {
       break;
@@ -128,20 +185,22 @@ static enum status take_step(struct equilibrium *s, const struct fe_load *load,
 
 /* Simplified Newton steps with the last factor while they contract. The residual belongs to the
  * state on entry and on exit. Returns true once converged. size is the last correction's. */
-static bool polish(struct equilibrium *s, const struct fe_load *load, struct fe_state *state,
-                   double size, double first_contraction) {
+static bool polish(struct equilibrium *s, struct fe_load *load, struct fe_state *state, double size,
+                   double first_contraction) {
   struct fe_model *m = s->model;
   double limit = first_contraction, tolerance = s->options.step_tolerance;
   for (int k = 0; k < CHORD_STEPS; k++) {
-    model_solve(m, m->residual, s->chord);
+    double change = correction(s, s->chord), *parameter = load_parameter(s, load);
     double next = rms(s, s->chord);
     if (!(next <= limit * size) && !(next < 0.1 * tolerance)) {
       return false;
     }
     state_copy(m, &s->saved, state);
     apply(s, state, s->chord, 1);
+    *parameter += change;
     if (model_evaluate(m, state, load, false) != STATUS_OK) {
       state_copy(m, state, &s->saved);
+      *parameter -= change;
       model_evaluate(m, state, load, false);
       return false;
     }
@@ -157,55 +216,63 @@ static bool polish(struct equilibrium *s, const struct fe_load *load, struct fe_
   return false;
 }
 
-/* Takes s->step, of rms `size`, no further than the longest step, and polishes what a whole step
- * reached. *converged tells whether that is the equilibrium. */
-static enum status step_and_polish(struct equilibrium *s, const struct fe_load *load,
+/* Takes s->step, of rms `size`, and the change of the load parameter, no further than the longest
+ * step, and polishes what a whole step reached. *converged tells whether that is the equilibrium.
+ */
+static enum status step_and_polish(struct equilibrium *s, struct fe_load *load, double change,
                                    struct fe_state *state, double size, bool *converged) {
   double most = largest(s, s->step);
   double share = most > s->options.longest_step ? s->options.longest_step / most : 1;
-  enum status status = take_step(s, load, state, &share);
+  enum status status = take_step(s, load, change, state, &share);
   if (s->verbose) {
     struct contact_summary c = contact_summarise(&s->model->contact);
-    fprintf(stderr, "    step %.2e share %.2f negative %d active %d gap %.3e\n", size, share,
-            s->negative_pivots, c.active, c.min_gap);
+    fprintf(stderr, "    step %.2e share %.2f negative %d active %d gap %.3e load %.6g\n", size,
+            share, s->negative_pivots, c.active, c.min_gap, *load_parameter(s, load));
   }
   s->last_correction = size;
   *converged = status == STATUS_OK && share == 1 && polish(s, load, state, size, 0.1);
   return status;
 }
 
-static enum status newton(struct equilibrium *s, const struct fe_load *load,
-                          double stiffness_pressure, struct fe_state *state, int *iterations) {
+/* Whether the corrections have stopped shrinking. */
+struct progress {
+  double best;
+  int since; /* iterations without a clearly smaller correction */
+};
+
+static bool stalled(struct progress *progress, double size) {
+  if (size < 0.7 * progress->best) {
+    *progress = (struct progress){size, 0};
+  } else {
+    progress->since++;
+  }
+  return progress->since >= STALL_ITERATIONS;
+}
+
+static enum status newton(struct equilibrium *s, struct fe_load *load, double stiffness_pressure,
+                          struct fe_state *state, int *iterations) {
   struct fe_model *m = s->model;
-  struct fe_load tangent_load = *load;
-  tangent_load.stiffness_pressure = stiffness_pressure;
-  double best = INFINITY;
-  int best_iteration = 0;
+  struct progress progress = {INFINITY, 0};
   for (int it = 0; it < s->options.max_iterations; it++) {
+    load->stiffness_pressure = it == 0 ? stiffness_pressure : load->pressure;
     enum status status = check_limits(s);
     if (status == STATUS_OK) {
-      status = model_evaluate(m, state, &tangent_load, true);
+      status = model_evaluate(m, state, load, true);
     }
     if (status != STATUS_OK) {
       return status;
     }
-    tangent_load.stiffness_pressure = load->pressure;
     s->negative_pivots = model_factor(m);
-    model_solve(m, m->residual, s->step);
+    renew_response(s, state);
+    double change = correction(s, s->step);
     ++*iterations;
     m->statistics.newton_iterations++;
     double size = rms(s, s->step);
-    if (!isfinite(size)) {
-      return STATUS_DIVERGED;
-    }
-    if (size < 0.7 * best) {
-      best = size;
-      best_iteration = it;
-    } else if (it - best_iteration >= STALL_ITERATIONS) {
+    if (!isfinite(size) || stalled(&progress, size)) {
       return STATUS_DIVERGED;
     }
     bool converged;
-    status = step_and_polish(s, load, state, size, &converged);
+    status = step_and_polish(s, load, change, state, size, &converged);
     if (status != STATUS_OK || converged) {
       return status;
     }
@@ -217,8 +284,7 @@ static enum status newton(struct equilibrium *s, const struct fe_load *load,
  * so close to that equilibrium that factorising there anew would gain nothing. Returns OK when
  * the prediction, polished, is already the new equilibrium, DIVERGED when Newton's method has to
  * go on from it, or from the old state if the prediction was no good. */
-static enum status predict(struct equilibrium *s, const struct fe_load *load,
-                           struct fe_state *state) {
+static enum status predict(struct equilibrium *s, struct fe_load *load, struct fe_state *state) {
   struct fe_model *m = s->model;
   if (model_evaluate(m, state, load, false) != STATUS_OK) {
     return STATUS_DIVERGED;
@@ -227,14 +293,14 @@ static enum status predict(struct equilibrium *s, const struct fe_load *load,
   double size = rms(s, s->step);
   bool converged = false;
   if (isfinite(size)) {
-    step_and_polish(s, load, state, size, &converged);
+    step_and_polish(s, load, 0, state, size, &converged);
   }
   return converged ? STATUS_OK : STATUS_DIVERGED;
 }
 
 /* Finds the partners of the contact at the state that has been reached, with their tractions. A
  * state in which a part of the body has passed into another is none. */
-static enum status meet(struct equilibrium *s, const struct fe_load *load, struct fe_state *state) {
+static enum status meet(struct equilibrium *s, struct fe_load *load, struct fe_state *state) {
   struct fe_model *m = s->model;
   enum status status = model_search_contact(m, state);
   if (status == STATUS_OK && contact_intrusion(&m->contact) > 0.25 * m->mesh->wall_thickness) {
@@ -243,10 +309,14 @@ static enum status meet(struct equilibrium *s, const struct fe_load *load, struc
   return status == STATUS_OK && m->pattern_stale ? model_evaluate(m, state, load, false) : status;
 }
 
+static bool touches(const struct fe_model *m) {
+  return m->use_contact || m->contact.plane_count > 0;
+}
+
 /* Raises the contact multipliers to the tractions until they settle; the factor stays frozen
  * while that contracts. */
-static enum status augment(struct equilibrium *s, const struct fe_load *load,
-                           struct fe_state *state, int *iterations) {
+static enum status augment(struct equilibrium *s, struct fe_load *load, struct fe_state *state,
+                           int *iterations) {
   struct fe_model *m = s->model;
   double relaxation = 0;
   for (int k = 0; k < AUGMENTATIONS; k++) {
@@ -292,26 +362,73 @@ static void keep_multipliers(struct equilibrium *s, struct fe_state *state) {
   }
 }
 
-enum status equilibrium_solve(struct equilibrium *s, const struct fe_load *load,
+enum status equilibrium_solve(struct equilibrium *s, const struct fe_load *target,
                               double previous_pressure, struct fe_state *state, int *iterations) {
   enum status status = STATUS_DIVERGED;
-  double pressure_step = load->pressure - previous_pressure;
+  struct fe_load load = *target;
+  double pressure_step = load.pressure - previous_pressure;
   bool continues = s->factor_fits && s->pressure_step != 0;
   start_multipliers(s, state, continues ? pressure_step / s->pressure_step : 0);
   *iterations = 0;
   if (s->factor_fits) {
-    status = predict(s, load, state);
-    previous_pressure = load->pressure;
+    status = predict(s, &load, state);
+    previous_pressure = load.pressure;
   }
   s->factor_fits = false;
   if (status != STATUS_OK) {
-    status = newton(s, load, previous_pressure, state, iterations);
+    status = newton(s, &load, previous_pressure, state, iterations);
   }
-  if (status == STATUS_OK && (s->model->use_contact || s->model->contact.plane_count > 0)) {
-    status = augment(s, load, state, iterations);
+  if (status == STATUS_OK && touches(s->model)) {
+    status = augment(s, &load, state, iterations);
   }
   keep_multipliers(s, state);
   s->pressure_step = pressure_step;
   s->factor_fits = status == STATUS_OK;
+  return status;
+}
+
+enum status equilibrium_tangent(struct equilibrium *s, const struct fe_load *target, bool dead,
+                                const struct fe_state *state, double *direction) {
+  struct fe_load load = *target;
+  load.stiffness_pressure = load.pressure;
+  start_multipliers(s, state, 0);
+  enum status status = model_evaluate(s->model, state, &load, true);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  s->negative_pivots = model_factor(s->model);
+  s->control.dead = dead;
+  load_force(s, state, s->control.force);
+  model_solve(s->model, s->control.force, direction);
+  for (int i = 0; i < s->model->dof_count; i++) {
+    direction[i] = -direction[i];
+  }
+  return isfinite(rms(s, direction)) ? STATUS_OK : STATUS_DIVERGED;
+}
+
+enum status equilibrium_follow(struct equilibrium *s, struct fe_load *load, bool dead,
+                               const double *direction, double change, struct fe_state *state,
+                               int *iterations) {
+  struct equilibrium_control *c = &s->control;
+  double size = rms(s, direction);
+  *iterations = 0;
+  start_multipliers(s, state, 0);
+  c->dead = dead;
+  c->active = true;
+  for (int i = 0; i < s->model->dof_count; i++) {
+    c->normal[i] = direction[i] / size;
+    s->step[i] = -change * direction[i];
+  }
+  /* The pressures of the elements follow in the first correction. */
+  apply(s, state, s->step, 1);
+  *load_parameter(s, load) += change;
+  enum status status = newton(s, load, load->pressure, state, iterations);
+  if (status == STATUS_OK && touches(s->model)) {
+    status = augment(s, load, state, iterations);
+  }
+  c->active = false;
+  keep_multipliers(s, state);
+  s->pressure_step = 0;
+  s->factor_fits = false;
   return status;
 }

@@ -17,14 +17,25 @@ struct equilibrium_options {
   void *cancel_context;
 };
 
+/* What stays fixed while a state is corrected: the load, or, when active, the place along the
+ * normal; the load parameter is then an unknown of its own (Riks 1979). */
+struct equilibrium_control {
+  bool active;
+  bool dead;        /* the load parameter is the dead load's factor, else the pressure */
+  double *normal;   /* dof_count: corrections of the displacements stay normal to it */
+  double *force;    /* dof_count: d residual / d load parameter */
+  double *response; /* dof_count: K^-1 force with the last factor */
+};
+
 struct equilibrium {
   struct fe_model *model;
   struct retraction *retraction;
   struct equilibrium_options options;
-  struct fe_state saved;  /* before the increment that is being tried */
-  double *step;           /* dof_count */
-  double *chord;          /* dof_count */
-  double *increment;      /* node_count x 3 */
+  struct fe_state saved; /* before the increment that is being tried */
+  double *step;          /* dof_count */
+  double *chord;         /* dof_count */
+  double *increment;     /* node_count x 3 */
+  struct equilibrium_control control;
   double *lambda_step;    /* change of every contact multiplier in the last solve, Pa */
   double pressure_step;   /* change of the pressure in the last solve, Pa */
   bool factor_fits;       /* the factor is that of the last equilibrium, or next to it */
@@ -42,8 +53,23 @@ void equilibrium_destroy(struct equilibrium *solver);
  * uses its load stiffness, which makes it the tangent predictor. Convergence is judged by the
  * last correction, never by the residual alone, which hardly sees bending.
  * *iterations receives the number of factorisations. Returns STATUS_OK, DIVERGED, INVERTED,
- * TIMEOUT or CANCELLED; after a failure the state is that of the last iterate: copy before. */
+ * CONTACT, TIMEOUT, CANCELLED or NO_MEMORY; after a failure the state is that of the last iterate:
+ * copy before. */
 enum status equilibrium_solve(struct equilibrium *solver, const struct fe_load *load,
                               double previous_pressure, struct fe_state *state, int *iterations);
+
+/* Tangent of the equilibrium path at a state in equilibrium with `load`: d u / d load parameter
+ * into direction[dof_count], m per Pa, or m for the whole dead load when `dead`. Factorises.
+ * Returns STATUS_OK, DIVERGED when the tangent is singular, INVERTED or NO_MEMORY. */
+enum status equilibrium_tangent(struct equilibrium *solver, const struct fe_load *load, bool dead,
+                                const struct fe_state *state, double *direction);
+
+/* One step of arc length: from a state in equilibrium with *load along the tangent `direction` of
+ * equilibrium_tangent by `change` of the load parameter (its sign is that of the step); then the
+ * state is corrected normal to the direction, and *load with it. Passes limit points of the load.
+ * Returns as equilibrium_solve. */
+enum status equilibrium_follow(struct equilibrium *solver, struct fe_load *load, bool dead,
+                               const double *direction, double change, struct fe_state *state,
+                               int *iterations);
 
 #endif

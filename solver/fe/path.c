@@ -1,4 +1,4 @@
-#include "solver/fe/path.h"
+#include "solver/fe/path_internal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -6,46 +6,31 @@
 /* Step control. */
 static const double cut_factor = 0.4;
 static const double grow_factor = 2;
-enum { EASY_ITERATIONS = 6, SMALLEST_PART = 500 };
-
-/* The load parameter runs over [0, 1] for the dead load and then over the pressure. */
-struct stage {
-  bool dead;   /* this stage ramps the dead load */
-  double end;  /* final value of the parameter */
-  int records; /* recorded at k/records end, k = 1 .. records */
-  double full; /* largest step */
+enum {
+  EASY_ITERATIONS = 6,
+  SMALLEST_PART = 60 /* of the load: below that, arc length */
 };
 
-struct walk {
-  struct equilibrium *solver;
-  const struct path_options *options;
-  struct fe_state *state; /* last converged */
-  struct fe_state trial;
-  double value; /* converged parameter of the stage */
-  double step;
-  int iterations;      /* since the last recorded state */
-  enum status failure; /* of the last attempt */
-};
-
-static struct fe_load stage_load(const struct walk *w, const struct stage *stage, double value) {
+struct fe_load walk_load(const struct walk *w, const struct stage *stage, double value) {
   bool dead = w->options->dead_load;
   return stage->dead ? (struct fe_load){0, 0, value} : (struct fe_load){value, value, dead ? 1 : 0};
 }
 
-static enum status visit(struct walk *w, const struct stage *stage, bool recorded) {
-  struct fe_load load = stage_load(w, stage, w->value);
-  struct path_point point = {load.pressure, load.dead, w->iterations, recorded, w->state};
+enum status walk_visit(struct walk *w, const struct stage *stage, bool recorded,
+                       const struct fe_state *state, double value) {
+  struct fe_load load = walk_load(w, stage, value);
+  struct path_point point = {load.pressure, load.dead,         w->iterations,
+                             recorded,      state != w->state, state};
   if (recorded) {
     w->iterations = 0;
   }
   return w->options->visit ? w->options->visit(w->options->context, &point) : STATUS_OK;
 }
 
-/* Tries one step to `target`. On failure the state stays. */
-static enum status advance(struct walk *w, const struct stage *stage, double target,
-                           int *iterations) {
+enum status walk_advance(struct walk *w, const struct stage *stage, double target,
+                         int *iterations) {
   struct fe_model *m = w->solver->model;
-  struct fe_load load = stage_load(w, stage, target);
+  struct fe_load load = walk_load(w, stage, target);
   double previous = stage->dead ? 0 : w->value;
   state_copy(m, &w->trial, w->state);
   enum status status = equilibrium_solve(w->solver, &load, previous, &w->trial, iterations);
@@ -61,44 +46,80 @@ static enum status advance(struct walk *w, const struct stage *stage, double tar
   return status;
 }
 
-static bool final_status(enum status status) {
+bool walk_final(enum status status) {
   return status == STATUS_TIMEOUT || status == STATUS_CANCELLED || status == STATUS_NO_MEMORY;
 }
 
-static enum status walk_stage(struct walk *w, const struct stage *stage) {
-  w->value = 0;
-  w->step = stage->full;
-  for (int record = 1; record <= stage->records;) {
-    double goal = stage->end * record / stage->records;
-    double target = w->value + w->step;
-    /* A step that would leave a sliver before the goal ends on it. */
-    if (target > goal - 0.05 * w->step) {
-      target = goal;
-    }
+/* Next load to try on the way to `goal`: a step that would leave a sliver before it ends on it. */
+static double next_target(const struct walk *w, double goal) {
+  double target = w->value + w->step;
+  return target > goal - 0.05 * w->step ? goal : target;
+}
+
+/* Reaches `goal`, by load steps or, where they get too short, by arc length. */
+static enum status reach(struct walk *w, const struct stage *stage, double goal) {
+  while (w->value < goal) {
+    double target = next_target(w, goal);
     int iterations;
-    enum status status = advance(w, stage, target, &iterations);
-    if (final_status(status)) {
+    enum status status = walk_advance(w, stage, target, &iterations);
+    if (walk_final(status)) {
       return status;
     }
     if (status != STATUS_OK) {
       w->failure = status;
       w->step = cut_factor * (target - w->value);
-      if (w->step < stage->end / SMALLEST_PART) {
-        return status == STATUS_INVERTED ? status : STATUS_STEP_MINIMUM;
+      if (w->step >= stage->end / SMALLEST_PART) {
+        continue;
       }
-      continue;
-    }
-    if (iterations <= EASY_ITERATIONS) {
+      status = walk_arc(w, stage, goal);
+      if (status != STATUS_OK) {
+        return status;
+      }
+    } else if (iterations <= EASY_ITERATIONS) {
       w->step = fmin(grow_factor * w->step, stage->full);
     }
-    bool recorded = target == goal;
-    record += recorded;
-    status = visit(w, stage, recorded && !stage->dead);
+    if (w->value < goal) {
+      status = walk_visit(w, stage, false, w->state, w->value);
+    }
     if (status != STATUS_OK) {
       return status;
     }
   }
   return STATUS_OK;
+}
+
+static enum status walk_stage(struct walk *w, const struct stage *stage) {
+  w->value = 0;
+  w->step = stage->full;
+  for (int record = 1; record <= stage->records; record++) {
+    enum status status = reach(w, stage, stage->end * record / stage->records);
+    if (status == STATUS_DIVERGED) {
+      return STATUS_STEP_MINIMUM;
+    }
+    if (status == STATUS_OK) {
+      status = walk_visit(w, stage, !stage->dead, w->state, w->value);
+    }
+    if (status != STATUS_OK) {
+      return status;
+    }
+  }
+  return STATUS_OK;
+}
+
+/* Says how far the walk came and why it ended there. */
+static void explain(const struct walk *w, const struct stage *stage, enum status status,
+                    struct error *error) {
+  const char *what = stage->dead ? "of the weight" : "kPa";
+  double unit = stage->dead ? 1 : 1e-3;
+  if (status == STATUS_LIMIT_POINT) {
+    error_set(error, status, "/load",
+              "the load cannot be raised beyond %.5g %s: a limit point, after which the path was "
+              "followed down to %.5g %s",
+              unit * w->limit, what, unit * w->beyond, what);
+  } else {
+    error_set(error, status, "/load", "stopped at %.5g %s: %s (last attempt: %s)", unit * w->value,
+              what, status_sentence(status), status_sentence(w->failure));
+  }
 }
 
 enum status path_follow(struct equilibrium *solver, const struct path_options *options,
@@ -115,15 +136,13 @@ enum status path_follow(struct equilibrium *solver, const struct path_options *o
   if (status == STATUS_OK) {
     stage = &pressure;
     w.value = 0;
-    status = visit(&w, &pressure, true);
+    status = walk_visit(&w, &pressure, true, state, 0);
   }
   if (status == STATUS_OK) {
     status = walk_stage(&w, &pressure);
   }
   if (status != STATUS_OK) {
-    const char *what = stage->dead ? "of the weight" : "Pa of pressure";
-    error_set(error, status, "/load", "stopped at %.6g %s: %s (last attempt: %s)", w.value, what,
-              status_sentence(status), status_sentence(w.failure));
+    explain(&w, stage, status, error);
   }
   state_release(&w.trial);
   return status;

@@ -10,6 +10,7 @@ struct path_point {
   double dead;     /* factor of the dead load */
   int iterations;  /* factorisations since the last recorded state */
   bool recorded;
+  bool arc; /* reached by arc length, where a rising load found no equilibrium */
   const struct fe_state *state;
 };
 
@@ -23,9 +24,12 @@ struct path_options {
 };
 
 /* Follows the path from the undeformed state in `state` (all zero). Load steps adapt: shorter
- * after a failure, longer after easy ones, landing exactly on the recorded pressures.
+ * after a failure, longer after easy ones, landing exactly on the recorded pressures. When they get
+ * too short the path is followed by arc length, over which the load may fall: either it comes back
+ * to the load that was wanted, or it is a limit point, and the path is followed some way beyond.
  * Returns STATUS_OK when the last pressure was reached; else the reason, with *error saying how
- * far it came, and `state` the last converged state. */
+ * far it came, and `state` the last converged state on the way up: LIMIT_POINT, INVERTED,
+ * CONTACT, STEP_MINIMUM, TIMEOUT, CANCELLED, NO_MEMORY. */
 enum status path_follow(struct equilibrium *solver, const struct path_options *options,
                         struct fe_state *state, struct error *error);
 

@@ -1,0 +1,175 @@
+/* Arc length: the path where a rising load finds no equilibrium. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "solver/fe/path_internal.h"
+
+enum {
+  ARC_STEPS = 150,   /* of a whole walk */
+  STEPS_BEYOND = 12, /* after a limit point */
+  EASY_ITERATIONS = 4,
+  HARD_ITERATIONS = 8
+};
+static const double cut_factor = 0.4, grow_factor = 1.6, slow_factor = 0.7;
+static const double smallest_part = 1e-3; /* of the first step */
+static const double deepest_fall = 0.7;   /* of the load at the limit point */
+
+/* One walk along the arc. Lengths are root mean squares over the unknowns, m. */
+struct arc {
+  struct walk *walk;
+  const struct stage *stage;
+  struct fe_state state; /* last converged on the arc */
+  double value;
+  double *direction; /* d u / d load */
+  double *last;      /* dof_count: the last step, empty before the first */
+  bool started;
+  double length, first_length;
+  int beyond; /* steps since the limit point */
+};
+
+static double norm(const double *v, int count) {
+  double sum = 0;
+  for (int i = 0; i < count; i++) {
+    sum += v[i] * v[i];
+  }
+  return sqrt(3 * sum / count);
+}
+
+/* Change of the load for the next step: of the arc's length, in the sense of the last step. */
+static double next_change(const struct arc *a) {
+  int count = a->walk->solver->model->dof_count;
+  double size = norm(a->direction, count), along = 0;
+  for (int i = 0; a->started && i < count; i++) {
+    along += a->direction[i] * a->last[i];
+  }
+  return (along < 0 ? -1 : 1) * a->length / size;
+}
+
+/* One step of the arc from its last state into walk->trial. */
+static enum status try_step(struct arc *a, struct fe_load *load, int *iterations) {
+  struct walk *w = a->walk;
+  *load = walk_load(w, a->stage, a->value);
+  enum status status =
+      equilibrium_tangent(w->solver, load, a->stage->dead, &a->state, a->direction);
+  *iterations = 0;
+  if (status != STATUS_OK) {
+    return status;
+  }
+  if (a->first_length == 0) {
+    a->first_length = a->length = w->step * norm(a->direction, w->solver->model->dof_count);
+  }
+  state_copy(w->solver->model, &w->trial, &a->state);
+  double change = next_change(a);
+  status = equilibrium_follow(w->solver, load, a->stage->dead, a->direction, change, &w->trial,
+                              iterations);
+  w->iterations += *iterations + 1;
+  if (w->solver->verbose) {
+    fprintf(stderr, "  arc %.3e m, load %.6g: %s after %d factorisations\n", a->length,
+            a->stage->dead ? load->dead : load->pressure, status_word(status), *iterations);
+  }
+  return status;
+}
+
+/* Takes over the trial state. */
+static void accept(struct arc *a, double value, int iterations) {
+  struct walk *w = a->walk;
+  const struct fe_model *m = w->solver->model;
+  for (int d = 0; d < 3 * m->mesh->node_count; d++) {
+    if (m->equation[d] >= 0) {
+      a->last[m->equation[d]] = w->trial.u[d] - a->state.u[d];
+    }
+  }
+  a->started = true;
+  state_copy(m, &a->state, &w->trial);
+  a->value = value;
+  if (iterations <= EASY_ITERATIONS) {
+    a->length *= grow_factor;
+  } else if (iterations >= HARD_ITERATIONS) {
+    a->length *= slow_factor;
+  }
+}
+
+/* Brings the last state of the arc to exactly `goal`, which the trial has passed. */
+static enum status land(struct arc *a, double goal, int *iterations) {
+  struct walk *w = a->walk;
+  struct fe_load load = walk_load(w, a->stage, goal);
+  w->solver->factor_fits = false;
+  enum status status = equilibrium_solve(w->solver, &load, load.pressure, &w->trial, iterations);
+  w->iterations += *iterations;
+  if (status == STATUS_OK) {
+    state_copy(w->solver->model, w->state, &w->trial);
+    w->value = goal;
+    w->limit = 0;
+  }
+  return status;
+}
+
+/* Whether the path beyond a limit point has been seen far enough. */
+static bool fallen(struct arc *a) {
+  struct walk *w = a->walk;
+  if (a->value >= w->value && a->value > w->limit) {
+    w->limit = 0;
+    w->value = a->value; /* still on the way up: the state goes with it */
+    state_copy(w->solver->model, w->state, &a->state);
+    a->beyond = 0;
+    return false;
+  }
+  w->limit = w->value;
+  w->beyond = a->beyond == 0 ? a->value : fmin(w->beyond, a->value);
+  a->beyond++;
+  return a->beyond >= STEPS_BEYOND || a->value < deepest_fall * w->limit;
+}
+
+static enum status follow(struct arc *a, double goal) {
+  struct walk *w = a->walk;
+  while (w->arc_steps < ARC_STEPS) {
+    struct fe_load load;
+    int iterations;
+    enum status status = try_step(a, &load, &iterations);
+    double value = a->stage->dead ? load.dead : load.pressure;
+    w->arc_steps++;
+    if (walk_final(status)) {
+      return status;
+    }
+    if (status == STATUS_OK && value >= goal) {
+      status = land(a, goal, &iterations);
+      if (status == STATUS_OK || walk_final(status)) {
+        return status;
+      }
+    }
+    if (status != STATUS_OK) {
+      w->failure = status;
+      a->length *= cut_factor;
+      if (a->length < smallest_part * a->first_length) {
+        break;
+      }
+      continue;
+    }
+    accept(a, value, iterations);
+    status = walk_visit(w, a->stage, false, &a->state, a->value);
+    if (status != STATUS_OK) {
+      return status;
+    }
+    if (fallen(a)) {
+      break;
+    }
+  }
+  return a->beyond > 0 ? STATUS_LIMIT_POINT : w->failure;
+}
+
+enum status walk_arc(struct walk *w, const struct stage *stage, double goal) {
+  const struct fe_model *m = w->solver->model;
+  struct arc a = {.walk = w, .stage = stage, .value = w->value};
+  a.direction = calloc((size_t)m->dof_count + 1, sizeof *a.direction);
+  a.last = calloc((size_t)m->dof_count + 1, sizeof *a.last);
+  enum status status = STATUS_NO_MEMORY;
+  if (a.direction && a.last && state_create(m, &a.state) == STATUS_OK) {
+    state_copy(m, &a.state, w->state);
+    status = follow(&a, goal);
+  }
+  state_release(&a.state);
+  free(a.direction);
+  free(a.last);
+  return status;
+}
