@@ -22,6 +22,9 @@ const ACTIONS = [
   ['retry', 'Retry', (state) => ['failed', 'timed_out', 'cancelled'].includes(state)],
 ];
 
+// Fields of one recorded pressure: many, so they are folded away.
+const STATE_FILE = /-\d{4}\.vtu$/;
+
 const id = window.location.pathname.split('/').filter(Boolean).pop();
 let shownActions = '';
 let hasResult = false;
@@ -138,12 +141,21 @@ function showFiles(job) {
   if (job.started) {
     files.push(['Log', links.log || jobUrl(id, '/log')]);
   }
+  const states = [];
   for (const link of links.artifacts || []) {
     const url = address(link, 'artifacts');
-    files.push([fileName(url), url]);
+    (STATE_FILE.test(url) ? states : files).push([fileName(url), url]);
   }
-  find('file-list').replaceChildren(...files.map(([name, url]) =>
-    make('li', {}, make('a', { href: url }, name))));
+  const item = ([name, url]) => make('li', {}, make('a', { href: url }, name));
+  const list = find('file-list');
+  const isOpen = list.querySelector('details')?.open || false;
+  list.replaceChildren(...files.map(item));
+  if (states.length > 0) {
+    const details = make('details', {}, make('summary', {}, `${states.length} VTU files`),
+      make('ul', { class: 'plain' }, ...states.map(item)));
+    details.open = isOpen;
+    list.append(make('li', {}, details));
+  }
 }
 
 function showResult(result) {

@@ -137,6 +137,9 @@ static const char *artifact_type(const char *name) {
   if (dot && strcmp(dot, ".csv") == 0) {
     return "text/csv; charset=utf-8";
   }
+  if (dot && strcmp(dot, ".inp") == 0) {
+    return "text/plain; charset=utf-8";
+  }
   return "application/octet-stream";
 }
 
