@@ -1,10 +1,11 @@
 /* Frictionless contact of the body's outer surface with itself and with rigid planes.
  *
- * The surface is the set of FACE_OUTER faces. At every Gauss point of a slave face the gap g to
- * the closest point of a master face gives an augmented Lagrangian traction t(g - lambda/eps)
- * (Alart, Curnier 1991), smoothed over +-delta so that the potential is twice differentiable:
- *   t(x) = 0 (x >= delta), eps (delta - x)^2 / (4 delta) (|x| < delta), -eps x (x <= -delta).
- * The tangent is the exact Hessian of that potential, with the curvature of the master face.
+ * The surface is the set of FACE_OUTER and FACE_BASE faces. At every Gauss point of a slave face
+ * the gap g to the closest point of a master face gives an augmented Lagrangian traction t(g -
+ * lambda/eps) (Alart, Curnier 1991), smoothed over +-delta so that the potential is twice
+ * differentiable: t(x) = 0 (x >= delta), eps (delta - x)^2 / (4 delta) (|x| < delta), -eps x (x <=
+ * -delta). The tangent is the exact Hessian of that potential, with the curvature of the master
+ * face.
  *
  * Who can meet whom: faces that look at each other across a gap of the mesh (mesh->facing) are
  * paired from the start; every other pair is found by contact_search. */

@@ -32,8 +32,8 @@ static size_t face_key(const struct mesh_face *face) {
   return 6 * (size_t)face->element + 2 * (size_t)face->axis + (face->side > 0);
 }
 
-/* Lists the outer faces, slaves of the gaps first, and the pairs across gaps. `listed` has six
- * places an element. */
+/* Lists the outer faces and those of the base, slaves of the gaps first, and the pairs across gaps.
+ * `listed` has six places an element. */
 static void list_faces(struct contact *contact, unsigned char *listed) {
   const struct mesh *mesh = contact->mesh;
   int gaps = mesh->facing_count;
@@ -48,7 +48,8 @@ static void list_faces(struct contact *contact, unsigned char *listed) {
   }
   contact->pair_count = gaps;
   for (int f = 0; f < mesh->face_count; f++) {
-    if (mesh->faces[f].kind == FACE_OUTER && !listed[face_key(&mesh->faces[f])]) {
+    bool outside = mesh->faces[f].kind == FACE_OUTER || mesh->faces[f].kind == FACE_BASE;
+    if (outside && !listed[face_key(&mesh->faces[f])]) {
       contact->face[contact->face_count++] = (struct contact_face){mesh->faces[f], 0};
     }
   }

@@ -158,18 +158,39 @@ static enum status check_limits(const struct equilibrium *s) {
   return o->deadline_s > 0 && clock_wall_s() > o->deadline_s ? STATUS_TIMEOUT : STATUS_OK;
 }
 
-/* Applies the Newton step, and `change` to the load parameter, shortened until no element is
- * inverted; the residual is evaluated at the new state. *share is the part applied. */
+/* Residual at a trial state reached by a correction of at most `most`. When that is far the
+ * partners of the contact are found anew: a part of the body that has passed into another, where
+ * no closest point pushes it back, makes the trial as useless as an inverted element. */
+static enum status evaluate_trial(struct equilibrium *s, struct fe_load *load,
+                                  const struct fe_state *state, double most) {
+  struct fe_model *m = s->model;
+  if (m->use_contact && most > 0.25 * m->contact.reach) {
+    enum status status = model_search_contact(m, state);
+    if (status != STATUS_OK) {
+      return status;
+    }
+    if (contact_intrusion(&m->contact) > 0.5 * m->contact.reach) {
+      return STATUS_CONTACT;
+    }
+  }
+  return model_evaluate(m, state, load, false);
+}
+
+/* Applies the Newton step, of largest entry `most`, and `change` to the load parameter, shortened
+ * until no element is inverted and no part of the body has passed into another; the residual is
+ * evaluated at the new state. *share is the part applied. */
 static enum status take_step(struct equilibrium *s, struct fe_load *load, double change,
-                             struct fe_state *state, double *share) {
+                             struct fe_state *state, double most, double *share) {
   struct fe_model *m = s->model;
   double *trial = s->chord, start = *load_parameter(s, load);
+  enum status status = STATUS_OK;
   state_copy(m, &s->saved, state);
   for (int attempt = 0; attempt < BACKTRACKS; attempt++) {
     memcpy(trial, s->step, sizeof *trial * (size_t)m->dof_count);
     apply(s, state, trial, *share);
     *load_parameter(s, load) = start + *share * change;
-    if (model_evaluate(m, state, load, false) == STATUS_OK) {
+    status = evaluate_trial(s, load, state, *share * most);
+    if (status == STATUS_OK) {
       return STATUS_OK;
     }
     *share *= 0.4;
@@ -180,7 +201,7 @@ static enum status take_step(struct equilibrium *s, struct fe_load *load, double
       break;
     }
   }
-  return STATUS_INVERTED;
+  return status;
 }
 
 /* Simplified Newton steps with the last factor while they contract. The residual belongs to the
@@ -223,7 +244,7 @@ static enum status step_and_polish(struct equilibrium *s, struct fe_load *load, 
                                    struct fe_state *state, double size, bool *converged) {
   double most = largest(s, s->step);
   double share = most > s->options.longest_step ? s->options.longest_step / most : 1;
-  enum status status = take_step(s, load, change, state, &share);
+  enum status status = take_step(s, load, change, state, most, &share);
   if (s->verbose) {
     struct contact_summary c = contact_summarise(&s->model->contact);
     fprintf(stderr, "    step %.2e share %.2f negative %d active %d gap %.3e load %.6g\n", size,

@@ -14,12 +14,14 @@ enum {
 static const double cut_factor = 0.4, grow_factor = 1.6, slow_factor = 0.7;
 static const double smallest_part = 1e-3; /* of the first step */
 static const double deepest_fall = 0.7;   /* of the load at the limit point */
+static const double landing_tolerance = 1e-3;
 
 /* One walk along the arc. Lengths are root mean squares over the unknowns, m. */
 struct arc {
   struct walk *walk;
   const struct stage *stage;
-  struct fe_state state; /* last converged on the arc */
+  struct fe_state state;  /* last converged on the arc */
+  struct fe_state passed; /* one beyond the goal */
   double value;
   double *direction; /* d u / d load */
   double *last;      /* dof_count: the last step, empty before the first */
@@ -90,17 +92,32 @@ static void accept(struct arc *a, double value, int iterations) {
   }
 }
 
-/* Brings the last state of the arc to exactly `goal`, which the trial has passed. */
-static enum status land(struct arc *a, double goal, int *iterations) {
+/* Takes the trial state, in equilibrium with `value`, as the state of the walk. */
+static void arrive(struct walk *w, double value) {
+  state_copy(w->solver->model, w->state, &w->trial);
+  w->value = value;
+  w->limit = 0;
+}
+
+/* The trial, in equilibrium with `value`, has passed `goal`: brings it to exactly that load. Where
+ * a held load does not converge, a trial close to the goal is taken as it is, and else the next
+ * step of the arc is to end there. */
+static enum status land(struct arc *a, double goal, double value, int *iterations) {
   struct walk *w = a->walk;
   struct fe_load load = walk_load(w, a->stage, goal);
+  struct fe_state *passed = &a->passed;
+  state_copy(w->solver->model, passed, &w->trial);
   w->solver->factor_fits = false;
   enum status status = equilibrium_solve(w->solver, &load, load.pressure, &w->trial, iterations);
   w->iterations += *iterations;
   if (status == STATUS_OK) {
-    state_copy(w->solver->model, w->state, &w->trial);
-    w->value = goal;
-    w->limit = 0;
+    arrive(w, goal);
+  } else if (!walk_final(status) && value - goal < landing_tolerance * goal) {
+    state_copy(w->solver->model, &w->trial, passed);
+    arrive(w, value);
+    status = STATUS_OK;
+  } else {
+    a->length *= fmin(0.9, 1.01 * (goal - a->value) / (value - a->value)) / cut_factor;
   }
   return status;
 }
@@ -133,7 +150,7 @@ static enum status follow(struct arc *a, double goal) {
       return status;
     }
     if (status == STATUS_OK && value >= goal) {
-      status = land(a, goal, &iterations);
+      status = land(a, goal, value, &iterations);
       if (status == STATUS_OK || walk_final(status)) {
         return status;
       }
@@ -164,11 +181,13 @@ enum status walk_arc(struct walk *w, const struct stage *stage, double goal) {
   a.direction = calloc((size_t)m->dof_count + 1, sizeof *a.direction);
   a.last = calloc((size_t)m->dof_count + 1, sizeof *a.last);
   enum status status = STATUS_NO_MEMORY;
-  if (a.direction && a.last && state_create(m, &a.state) == STATUS_OK) {
+  if (a.direction && a.last && state_create(m, &a.state) == STATUS_OK &&
+      state_create(m, &a.passed) == STATUS_OK) {
     state_copy(m, &a.state, w->state);
     status = follow(&a, goal);
   }
   state_release(&a.state);
+  state_release(&a.passed);
   free(a.direction);
   free(a.last);
   return status;
