@@ -2,32 +2,64 @@
 
 #include <float.h>
 #include <stdlib.h>
+#include <string.h>
 
-enum status grid_axis_extend(struct grid_axis *axis, double end, int cells, int tag) {
-  int added = cells > 0 ? cells : 1;
-  if (axis->line_count + added > axis->capacity) {
-    int capacity = 2 * (axis->line_count + added);
-    double *line = realloc(axis->line, sizeof *line * (size_t)capacity);
-    if (!line) {
-      return STATUS_NO_MEMORY;
-    }
-    axis->line = line;
-    int *tags = realloc(axis->tag, sizeof *tags * (size_t)capacity);
-    if (!tags) {
-      return STATUS_NO_MEMORY;
-    }
-    axis->tag = tags;
-    axis->capacity = capacity;
-  }
-  if (cells <= 0) {
-    axis->line[axis->line_count++] = end;
+static enum status reserve_lines(struct grid_axis *axis, int added) {
+  if (axis->line_count + added <= axis->capacity) {
     return STATUS_OK;
   }
-  double start = axis->line[axis->line_count - 1];
-  for (int c = 1; c <= cells; c++) {
-    axis->tag[axis->line_count - 1] = tag;
-    axis->line[axis->line_count++] = c == cells ? end : start + (end - start) * c / cells;
+  int capacity = 2 * (axis->line_count + added);
+  double *line = realloc(axis->line, sizeof *line * (size_t)capacity);
+  if (!line) {
+    return STATUS_NO_MEMORY;
   }
+  axis->line = line;
+  int *tags = realloc(axis->tag, sizeof *tags * (size_t)capacity);
+  if (!tags) {
+    return STATUS_NO_MEMORY;
+  }
+  axis->tag = tags;
+  axis->capacity = capacity;
+  return STATUS_OK;
+}
+
+/* Length of cell c relative to the others of its stretch. */
+static double relative_length(const struct grid_division *d, int c) {
+  double weight = c == 0 ? d->first : c == d->cells - 1 ? d->last : 1;
+  return weight > 0 ? weight : 1;
+}
+
+enum status grid_axis_divide(struct grid_axis *axis, double end,
+                             const struct grid_division *division, int tag) {
+  int split = division->split > 0 ? division->split : 1;
+  if (reserve_lines(axis, division->cells * split) != STATUS_OK) {
+    return STATUS_NO_MEMORY;
+  }
+  double start = axis->line[axis->line_count - 1], total = 0, before = 0;
+  for (int c = 0; c < division->cells; c++) {
+    total += relative_length(division, c);
+  }
+  for (int c = 0; c < division->cells; c++) {
+    double length = relative_length(division, c);
+    for (int s = 1; s <= split; s++) {
+      bool last = c == division->cells - 1 && s == split;
+      double part = (before + length * s / split) / total;
+      axis->tag[axis->line_count - 1] = tag;
+      axis->line[axis->line_count++] = last ? end : start + (end - start) * part;
+    }
+    before += length;
+  }
+  return STATUS_OK;
+}
+
+enum status grid_axis_extend(struct grid_axis *axis, double end, int cells, int tag) {
+  if (cells > 0) {
+    return grid_axis_divide(axis, end, &(struct grid_division){.cells = cells}, tag);
+  }
+  if (reserve_lines(axis, 1) != STATUS_OK) {
+    return STATUS_NO_MEMORY;
+  }
+  axis->line[axis->line_count++] = end;
   return STATUS_OK;
 }
 
@@ -141,6 +173,9 @@ static void fill_nodes(const struct builder *b, bool half, grid_map_fn map, cons
     if (element < 0) {
       continue;
     }
+    for (int d = 0; d < 3; d++) {
+      mesh->element_cell[3 * element + d] = c[d];
+    }
     for (int n = 0; n < HEX27_NODES; n++) {
       mesh->element_nodes[HEX27_NODES * element + n] = b->lattice_node[lattice_index(
           b, 2 * c[0] + n / 9, 2 * c[1] + n / 3 % 3, 2 * c[2] + n % 3)];
@@ -211,20 +246,35 @@ static void fill_faces(const struct builder *b, bool half, struct mesh *mesh) {
   }
 }
 
+/* Copies the lines of the grid. */
+static bool copy_lines(const struct grid *grid, struct mesh *mesh) {
+  for (int d = 0; d < 3; d++) {
+    size_t size = sizeof *mesh->line[d] * (size_t)grid->axis[d].line_count;
+    mesh->line_count[d] = grid->axis[d].line_count;
+    mesh->line[d] = malloc(size);
+    if (!mesh->line[d]) {
+      return false;
+    }
+    memcpy(mesh->line[d], grid->axis[d].line, size);
+  }
+  return true;
+}
+
 static bool allocate_mesh(struct mesh *mesh, int nodes, int elements, int sections) {
   mesh->node_count = nodes;
   mesh->element_count = elements;
   mesh->section_count = sections;
   mesh->x = calloc((size_t)nodes * 3, sizeof *mesh->x);
   mesh->element_nodes = calloc((size_t)elements * HEX27_NODES, sizeof *mesh->element_nodes);
+  mesh->element_cell = calloc((size_t)elements * 3, sizeof *mesh->element_cell);
   mesh->fixed = calloc((size_t)nodes * 3, 1);
   mesh->faces = calloc((size_t)elements * 6 + 1, sizeof *mesh->faces);
   mesh->facing = calloc((size_t)elements * 3 + 1, sizeof *mesh->facing);
   mesh->node_section = calloc((size_t)nodes, sizeof *mesh->node_section);
   mesh->node_core = calloc((size_t)nodes, 1);
   mesh->centreline = calloc((size_t)sections, sizeof *mesh->centreline);
-  return mesh->x && mesh->element_nodes && mesh->fixed && mesh->faces && mesh->facing &&
-         mesh->node_section && mesh->node_core && mesh->centreline;
+  return mesh->x && mesh->element_nodes && mesh->element_cell && mesh->fixed && mesh->faces &&
+         mesh->facing && mesh->node_section && mesh->node_core && mesh->centreline;
 }
 
 enum status grid_mesh(const struct grid *grid, bool half, grid_kind_fn kind, grid_map_fn map,
@@ -253,7 +303,7 @@ enum status grid_mesh(const struct grid *grid, bool half, grid_kind_fn kind, gri
   }
   int elements = number_cells(&b, kind, context);
   int nodes = number_nodes(&b);
-  if (!allocate_mesh(mesh, nodes, elements, b.lattice[0])) {
+  if (!allocate_mesh(mesh, nodes, elements, b.lattice[0]) || !copy_lines(grid, mesh)) {
     status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for %d elements", elements);
     goto done;
   }

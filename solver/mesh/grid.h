@@ -19,6 +19,20 @@ struct grid {
   struct grid_axis axis[3];
 };
 
+/* How a stretch is divided: into `cells` cells, equal but for the first and the last one, which
+ * are `first` and `last` times as long as the others (0 stands for 1); each of them is then cut
+ * into `split` equal parts (0 stands for 1). */
+struct grid_division {
+  int cells;
+  double first, last;
+  int split;
+};
+
+/* Appends the cells of a stretch that ends at coordinate `end`. The axis must have its start.
+ * Returns STATUS_OK or STATUS_NO_MEMORY. */
+enum status grid_axis_divide(struct grid_axis *axis, double end,
+                             const struct grid_division *division, int tag);
+
 /* Appends `cells` equal cells up to coordinate `end`. The first call sets the start with
  * cells = 0. Returns STATUS_OK or STATUS_NO_MEMORY. */
 enum status grid_axis_extend(struct grid_axis *axis, double end, int cells, int tag);

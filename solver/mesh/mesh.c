@@ -8,6 +8,10 @@ void mesh_release(struct mesh *mesh) {
   }
   free(mesh->x);
   free(mesh->element_nodes);
+  free(mesh->element_cell);
+  for (int d = 0; d < 3; d++) {
+    free(mesh->line[d]);
+  }
   free(mesh->fixed);
   free(mesh->faces);
   free(mesh->facing);

@@ -33,6 +33,10 @@ struct mesh {
   int face_count;
   struct mesh_facing *facing;
   int facing_count;
+  /* The tensor grid behind the mesh, in its own coordinates: cell of every element, lines. */
+  int *element_cell; /* element_count x 3 */
+  int line_count[3];
+  double *line[3];
   double gap_width;      /* narrowest gap between facing faces, m; 0 without facing */
   double wall_thickness; /* thinnest wall, m: scale of the contact stiffness and tolerances */
   bool half;             /* the other half is the mirror image about y = 0 */

@@ -79,13 +79,7 @@ static void pneunet_map(const void *context, const double grid_point[3], double 
          grid_point[2] * pneunet_height(p, grid_point[0]) / p->height_base;
 }
 
-/* Sizes of elements relative to the height, per accuracy tier. */
-struct tier {
-  double cavity, half_width, bottom, height;
-  int gap_wall, side_wall, top;
-};
-
-static bool any_detached(const struct pneunet_spec *p) {
+bool pneunet_detached(const struct pneunet_spec *p) {
   bool detached = false;
   for (int r = 0; r < p->run_count; r++) {
     detached = detached || p->runs[r].config == CHAMBER_C;
@@ -93,48 +87,10 @@ static bool any_detached(const struct pneunet_spec *p) {
   return detached;
 }
 
-/* |y| where the stretch of the lateral axis between channel or stem and side wall begins. */
-static double inner_start(const struct pneunet_spec *p) {
-  return any_detached(p) ? p->stem : p->has_channel ? 0.5 * p->channel_width : 0;
-}
-
-/* z where the stretch of the vertical axis below the top wall begins. */
-static double cavity_floor(const struct pneunet_spec *p) {
-  return p->bottom_layer + (any_detached(p) ? p->slit + p->slit_floor : 0);
-}
-
-struct mesh_spec pneunet_resolution(const struct job_spec *spec) {
-  static const struct tier tiers[] = {
-      [ACCURACY_FAST] = {0.35, 0.70, 0.45, 0.33, 2, 1, 1},
-      [ACCURACY_STANDARD] = {0.35, 0.70, 0.45, 0.22, 2, 1, 1},
-      [ACCURACY_FINE] = {0.18, 0.24, 0.20, 0.11, 2, 2, 2},
-  };
-  const struct tier *tier = &tiers[spec->accuracy];
-  const struct pneunet_spec *p = &spec->pneunet;
-  double h = p->height_base;
-  struct mesh_spec chosen = spec->mesh;
-#define CHOOSE(field, value)                                                                       \
-  if (chosen.field <= 0) {                                                                         \
-    chosen.field = (value);                                                                        \
-  }
-#define CELLS(extent, size) (int)fmax(1, ceil((extent) / ((size)*h) - 0.05))
-  CHOOSE(gap_wall, tier->gap_wall)
-  CHOOSE(side_wall, tier->side_wall)
-  CHOOSE(top, tier->top)
-  CHOOSE(gap, 1)
-  CHOOSE(cavity, CELLS(p->cavity_length, tier->cavity))
-  CHOOSE(half_width, CELLS(0.5 * p->width - p->side_wall - inner_start(p), tier->half_width))
-  CHOOSE(bottom, CELLS(p->bottom_layer, tier->bottom))
-  CHOOSE(height, CELLS(h - p->top_wall - cavity_floor(p), tier->height))
-#undef CELLS
-#undef CHOOSE
-  return chosen;
-}
-
 /* One stretch of a grid axis. */
 struct stretch {
   double end;
-  int cells;
+  const struct grid_division *division;
   int tag;
 };
 
@@ -144,7 +100,7 @@ static enum status extend_all(struct grid_axis *axis, const struct stretch *list
   for (int s = 0; s < count && status == STATUS_OK; s++) {
     double start = axis->line[axis->line_count - 1];
     if (list[s].end > start + 1e-12) {
-      status = grid_axis_extend(axis, list[s].end, list[s].cells, list[s].tag);
+      status = grid_axis_divide(axis, list[s].end, list[s].division, list[s].tag);
     }
   }
   return status;
@@ -160,7 +116,7 @@ static enum chamber_config config_of(const struct pneunet_spec *p, int chamber) 
 
 /* Lines along the body; station[c] receives the line where chamber c starts, and
  * station[chamber_count] the last line. */
-static enum status axial_lines(const struct pneunet_spec *p, const struct mesh_spec *n,
+static enum status axial_lines(const struct pneunet_spec *p, const struct pneunet_cells *n,
                                struct grid_axis *axis, int *station) {
   double x = 0;
   enum status status = grid_axis_extend(axis, 0, 0, 0);
@@ -176,13 +132,13 @@ static enum status axial_lines(const struct pneunet_spec *p, const struct mesh_s
     struct stretch list[4];
     int count = 0;
     if (!shared_wall) {
-      list[count++] = (struct stretch){x += p->gap_wall, n->gap_wall, c == 0 ? end : wall};
+      list[count++] = (struct stretch){x += p->gap_wall, &n->gap_wall, c == 0 ? end : wall};
     }
-    list[count++] = (struct stretch){x += p->cavity_length, n->cavity, cavity};
+    list[count++] = (struct stretch){x += p->cavity_length, &n->cavity, cavity};
     int after = joint ? AXIAL_JOINT : last ? end : wall;
-    list[count++] = (struct stretch){x += p->gap_wall, n->gap_wall, after};
+    list[count++] = (struct stretch){x += p->gap_wall, &n->gap_wall, after};
     if (!last && !joint) {
-      list[count++] = (struct stretch){x += p->chamber_gap, n->gap, AXIAL_GAP};
+      list[count++] = (struct stretch){x += p->chamber_gap, &n->gap, AXIAL_GAP};
     }
     status = extend_all(axis, list, count);
     shared_wall = joint;
@@ -192,24 +148,27 @@ static enum status axial_lines(const struct pneunet_spec *p, const struct mesh_s
 }
 
 /* Lines across the body: from 0 for a half model, mirrored about 0 otherwise. */
-static enum status lateral_lines(const struct pneunet_spec *p, const struct mesh_spec *n, bool half,
-                                 bool detached, struct grid_axis *axis) {
+static enum status lateral_lines(const struct pneunet_spec *p, const struct pneunet_cells *n,
+                                 bool half, bool detached, struct grid_axis *axis) {
   struct stretch list[4];
   int count = 0;
   if (p->has_channel) {
-    list[count++] = (struct stretch){0.5 * p->channel_width, 1, LATERAL_CHANNEL};
+    list[count++] = (struct stretch){0.5 * p->channel_width, &n->channel, LATERAL_CHANNEL};
   }
   if (detached) {
-    list[count++] = (struct stretch){p->stem, 1, LATERAL_STEM};
+    list[count++] = (struct stretch){p->stem, &n->stem, LATERAL_STEM};
   }
   double side = 0.5 * p->width;
-  list[count++] = (struct stretch){side - p->side_wall, n->half_width, LATERAL_INNER};
-  list[count++] = (struct stretch){side, n->side_wall, LATERAL_SIDE};
+  list[count++] = (struct stretch){side - p->side_wall, &n->half_width, LATERAL_INNER};
+  list[count++] = (struct stretch){side, &n->side_wall, LATERAL_SIDE};
   enum status status = STATUS_OK;
   if (!half) {
     status = grid_axis_extend(axis, -side, 0, 0);
     for (int s = count - 1; s >= 0 && status == STATUS_OK; s--) {
-      struct stretch mirrored = {s > 0 ? -list[s - 1].end : 0, list[s].cells, list[s].tag};
+      struct grid_division division = *list[s].division;
+      division.first = list[s].division->last;
+      division.last = list[s].division->first;
+      struct stretch mirrored = {s > 0 ? -list[s - 1].end : 0, &division, list[s].tag};
       status = extend_all(axis, &mirrored, 1);
     }
   } else {
@@ -219,18 +178,18 @@ static enum status lateral_lines(const struct pneunet_spec *p, const struct mesh
 }
 
 /* Lines from bottom to top; *core receives the number of lines of the bottom layer. */
-static enum status vertical_lines(const struct pneunet_spec *p, const struct mesh_spec *n,
+static enum status vertical_lines(const struct pneunet_spec *p, const struct pneunet_cells *n,
                                   bool detached, struct grid_axis *axis, int *core) {
   double b = p->bottom_layer, h = p->height_base;
   struct stretch below[3];
   int count = 0;
   if (p->has_channel) {
     double ceiling = b - p->channel_cover;
-    below[count++] = (struct stretch){ceiling - p->channel_height, 1, VERTICAL_BOTTOM};
-    below[count++] = (struct stretch){ceiling, 1, VERTICAL_CHANNEL};
-    below[count++] = (struct stretch){b, 1, VERTICAL_COVER};
+    below[count++] = (struct stretch){ceiling - p->channel_height, &n->below, VERTICAL_BOTTOM};
+    below[count++] = (struct stretch){ceiling, &n->duct, VERTICAL_CHANNEL};
+    below[count++] = (struct stretch){b, &n->cover, VERTICAL_COVER};
   } else {
-    below[count++] = (struct stretch){b, n->bottom, VERTICAL_BOTTOM};
+    below[count++] = (struct stretch){b, &n->bottom, VERTICAL_BOTTOM};
   }
   enum status status = grid_axis_extend(axis, 0, 0, 0);
   if (status == STATUS_OK) {
@@ -240,11 +199,11 @@ static enum status vertical_lines(const struct pneunet_spec *p, const struct mes
   struct stretch above[4];
   count = 0;
   if (detached) {
-    above[count++] = (struct stretch){b + p->slit, 1, VERTICAL_SLIT};
-    above[count++] = (struct stretch){b + p->slit + p->slit_floor, 1, VERTICAL_FLOOR};
+    above[count++] = (struct stretch){b + p->slit, &n->slit, VERTICAL_SLIT};
+    above[count++] = (struct stretch){b + p->slit + p->slit_floor, &n->floor, VERTICAL_FLOOR};
   }
-  above[count++] = (struct stretch){h - p->top_wall, n->height, VERTICAL_CAVITY};
-  above[count++] = (struct stretch){h, n->top, VERTICAL_TOP};
+  above[count++] = (struct stretch){h - p->top_wall, &n->height, VERTICAL_CAVITY};
+  above[count++] = (struct stretch){h, &n->top, VERTICAL_TOP};
   return status == STATUS_OK ? extend_all(axis, above, count) : status;
 }
 
@@ -276,18 +235,18 @@ static enum status mark_sections(const struct pneunet_spec *p, const struct grid
   return STATUS_OK;
 }
 
-enum status pneunet_mesh(const struct job_spec *spec, struct mesh *mesh, struct error *error) {
+enum status pneunet_mesh_cells(const struct job_spec *spec, const struct pneunet_cells *cells,
+                               struct mesh *mesh, struct error *error) {
   const struct pneunet_spec *p = &spec->pneunet;
-  struct mesh_spec n = pneunet_resolution(spec);
   struct grid grid = {0};
   int station[CHAMBERS_MAX + 1], core = 0;
-  bool detached = any_detached(p);
-  enum status status = axial_lines(p, &n, &grid.axis[0], station);
+  bool detached = pneunet_detached(p);
+  enum status status = axial_lines(p, cells, &grid.axis[0], station);
   if (status == STATUS_OK) {
-    status = lateral_lines(p, &n, spec->half_model, detached, &grid.axis[1]);
+    status = lateral_lines(p, cells, spec->half_model, detached, &grid.axis[1]);
   }
   if (status == STATUS_OK) {
-    status = vertical_lines(p, &n, detached, &grid.axis[2], &core);
+    status = vertical_lines(p, cells, detached, &grid.axis[2], &core);
   }
   if (status != STATUS_OK) {
     error_set(error, status, NULL, "no memory for the lines of the mesh");
@@ -306,4 +265,9 @@ enum status pneunet_mesh(const struct job_spec *spec, struct mesh *mesh, struct 
 done:
   grid_release(&grid);
   return status;
+}
+
+enum status pneunet_mesh(const struct job_spec *spec, struct mesh *mesh, struct error *error) {
+  struct pneunet_cells cells = pneunet_resolution(spec);
+  return pneunet_mesh_cells(spec, &cells, mesh, error);
 }

@@ -23,9 +23,9 @@ static bool same_layout(const struct mesh *a, const struct mesh *b) {
 
 /* Fills side k of the variation at `value`. STATUS_OK or NO_MEMORY, or another status when there
  * is no such body or its mesh has another layout. */
-static enum status make_side(struct job_spec *spec, const struct mesh *mesh,
-                             const struct variant *original, double value, int k,
-                             struct variation *v) {
+static enum status make_side(struct job_spec *spec, const struct pneunet_cells *cells,
+                             const struct mesh *mesh, const struct variant *original, double value,
+                             int k, struct variation *v) {
   struct mesh moved = {0};
   bool half = spec->half_model;
   enum status status = parameter_set(spec, v->parameter, value, NULL);
@@ -42,7 +42,7 @@ static enum status make_side(struct job_spec *spec, const struct mesh *mesh,
     spec->pneunet.taper_left = spec->pneunet.taper_right = value;
     spec->half_model = true;
   }
-  status = pneunet_mesh(spec, &moved, NULL);
+  status = pneunet_mesh_cells(spec, cells, &moved, NULL);
   if (status == STATUS_OK && !same_layout(&moved, mesh)) {
     status = STATUS_CONFLICT;
   }
@@ -62,12 +62,12 @@ enum status variation_create(const struct job_spec *spec, const struct mesh *mes
   double value = parameter_value(spec, parameter), distance = 0;
   double step = relative_step * fmax(fabs(value), parameter->unit_si);
   struct job_spec *changed = malloc(sizeof *changed);
+  struct pneunet_cells cells = pneunet_resolution(spec);
   enum status status = changed ? STATUS_OK : STATUS_NO_MEMORY;
   *v = (struct variation){.parameter = parameter};
   for (int k = 0; status != STATUS_NO_MEMORY && k < 2; k++) {
     *changed = *spec;
-    changed->mesh = pneunet_resolution(spec);
-    status = make_side(changed, mesh, original, value + (k ? step : -step), k, v);
+    status = make_side(changed, &cells, mesh, original, value + (k ? step : -step), k, v);
     if (status == STATUS_OK) {
       distance += step;
     } else {

@@ -369,16 +369,21 @@ START_TEST(every_tier_chooses_at_least_one) {
   for (int tier = ACCURACY_FAST; tier <= ACCURACY_FINE; tier++) {
     struct mesh mesh;
     spec.accuracy = (enum accuracy)tier;
-    struct mesh_spec n = pneunet_resolution(&spec);
-    ck_assert(n.gap_wall >= 2 && n.cavity > 0 && n.gap > 0 && n.half_width > 0);
-    ck_assert(n.side_wall > 0 && n.bottom > 0 && n.height > 0 && n.top > 0);
+    struct pneunet_cells n = pneunet_resolution(&spec);
+    const struct grid_division *all[] = {&n.gap_wall, &n.cavity,     &n.gap,       &n.channel,
+                                         &n.stem,     &n.half_width, &n.side_wall, &n.bottom,
+                                         &n.below,    &n.duct,       &n.cover,     &n.slit,
+                                         &n.floor,    &n.height,     &n.top};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+      ck_assert_int_gt(all[k]->cells, 0);
+    }
     ck_assert_int_eq(pneunet_mesh(&spec, &mesh, NULL), STATUS_OK);
     elements[tier] = mesh.element_count;
     mesh_release(&mesh);
   }
   ck_assert(elements[0] <= elements[1] && elements[1] < elements[2]);
   spec.mesh.bottom = 5;
-  ck_assert_int_eq(pneunet_resolution(&spec).bottom, 5);
+  ck_assert_int_eq(pneunet_resolution(&spec).bottom.cells, 5);
 }
 END_TEST
 

@@ -1,0 +1,35 @@
+#include "solver/solve.h"
+
+bool solve_has_gravity(const struct job_spec *spec) {
+  const double *g = spec->load.gravity;
+  return g[0] != 0 || g[1] != 0 || g[2] != 0;
+}
+
+enum status solve_prepare(const struct job_spec *spec, struct solve *solve, struct error *error) {
+  enum status status =
+      model_create(&solve->mesh, &spec->material, spec->contact, &solve->model, error);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  if (solve_has_gravity(spec)) {
+    model_add_gravity(solve->model, spec->load.gravity);
+  }
+  status = equilibrium_create(solve->model, &solve->solver, error);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  /* 1 % of the pressure between chambers leaves a penetration far below the wall thickness. */
+  solve->solver->options.traction_tolerance = 0.01 * spec->load.pressure_to;
+  if (state_create(solve->model, &solve->state) != STATUS_OK) {
+    return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the state");
+  }
+  return STATUS_OK;
+}
+
+void solve_release(struct solve *solve) {
+  state_release(&solve->state);
+  equilibrium_destroy(solve->solver);
+  model_destroy(solve->model);
+  mesh_release(&solve->mesh);
+  *solve = (struct solve){0};
+}
