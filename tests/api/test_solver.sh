@@ -22,6 +22,13 @@ for link in $(field '.links.plots[], .links.artifacts[]'); do
   fetch GET "$link"
   check "GET $link" 200 "$CODE"
 done
+type_of() { curl -s -o "$WORK/file" -w '%{content_type}' "$URL/api/v1/jobs/$id/artifacts/$1"; }
+check "type of VTU" application/xml "$(type_of volume-0002.vtu)"
+check "type of PVD" application/xml "$(type_of surface.pvd)"
+check "type of the deck" 'text/plain; charset=utf-8' "$(type_of model.inp)"
+check "type of the midlines" 'text/csv; charset=utf-8' "$(type_of midlines.csv)"
+check "the table of the solver is that of the interface" "$(curl -s "$URL/api/v1/jobs/$id/samples.csv" | wc -l)" \
+  "$(curl -s "$URL/api/v1/jobs/$id/artifacts/samples.csv" | wc -l)"
 check "comparison" "$id|succeeded|12.0" "$(sql 'select id, state, chambers from comparison')"
 check "an attempt used processor time" 1 "$(sql 'select count(*) from attempt where cpu_s > 0 and peak_memory_MB > 0')"
 
