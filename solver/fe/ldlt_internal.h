@@ -13,7 +13,8 @@ struct front {
   int parent;                     /* -1 for a root */
   size_t row;                     /* into ldlt.row and ldlt.parent_row */
   size_t value;                   /* into ldlt.value: rows x columns, column-major */
-  size_t stack;                   /* where its update matrix lies in ldlt.stack */
+  int level;                      /* depth in the tree modulo 2: which stack it uses */
+  size_t stack;                   /* where its update matrix lies in ldlt.stack[level] */
   int clique_first, clique_count; /* into ldlt.clique */
 };
 
@@ -28,8 +29,11 @@ struct ldlt {
   int *clique_row;     /* per unknown of a clique: row in its front, -1 when fixed */
   double *value;       /* L */
   double *sign;        /* dof_count, in elimination order */
-  double *work;        /* largest front */
-  double *stack;       /* update matrices waiting for their parents */
+  double *work;        /* of the dense elimination */
+  double **column;     /* where the columns of the current front begin, less their row */
+  int *run;            /* largest front + 1 */
+  double *stack[2];    /* update matrices waiting for their parents, by level: a front's own never
+                        * lies over those of its children */
   double *vector;      /* 2 x dof_count */
   int *pending;        /* stack of fronts whose update matrix waits */
   struct ldlt_statistics statistics;

@@ -1,168 +1,101 @@
 #include <cblas.h>
-#include <math.h>
 #include <string.h>
+#include "solver/fe/ldlt_front.h"
 #include "solver/fe/ldlt_internal.h"
 
-/* Columns eliminated between two updates of the rest of a front. */
-enum { PANEL = 32 };
+/* Runs shorter than this on average are added value by value. */
+enum { LONG_RUN = 8 };
 
 /* Adds a clique's upper triangle by rows to the lower triangle of the front. */
-static void add_clique(const int *row, int count, const double *values, double *front,
-                       size_t height) {
+static void add_clique(const int *row, int count, const double *values, double *const *column) {
   for (int i = 0; i < count; i++) {
     int r = row[i];
     if (r < 0) {
       values += count - i;
       continue;
     }
-    double *column = front + (size_t)r * height;
+    double *own = column[r];
     for (int j = i; j < count; j++) {
       int c = row[j];
       if (c >= r) {
-        column[c] += *values;
+        own[c] += *values;
       } else if (c >= 0) {
-        front[(size_t)r + (size_t)c * height] += *values;
+        column[c][r] += *values;
       }
       values++;
     }
   }
 }
 
-/* Adds the update matrix of a child to its parent's front. */
-static void extend_add(const struct ldlt *f, const struct front *child, double *front,
-                       size_t height) {
+/* Where the runs of rows begin that stay neighbours in the parent; run[] ends with `below`.
+ * Returns their number. */
+static int find_runs(const int *to, int below, int *run) {
+  int count = 0;
+  for (int i = 0; i < below; i++) {
+    if (i == 0 || to[i] != to[i - 1] + 1) {
+      run[count++] = i;
+    }
+  }
+  run[count] = below;
+  return count;
+}
+
+/* Adds columns first .. last - 1 of the update matrix of a child to its parent's front. */
+static void extend_add(const struct ldlt *f, const struct front *child, int first, int last) {
   int below = child->rows - child->columns;
   const int *to = f->parent_row + child->row + child->columns;
-  const double *update = f->stack + child->stack;
-  for (int j = 0; j < below; j++) {
-    double *column = front + (size_t)to[j] * height;
+  const double *update = f->stack[child->level] + child->stack;
+  int runs = find_runs(to, below, f->run), at = 0;
+  for (int j = first; j < last; j++) {
+    double *column = f->column[to[j]];
     const double *from = update + (size_t)j * (size_t)below;
-    /* Rows that stay neighbours in the parent are added in one run. */
-    for (int i = j; i < below;) {
-      int shift = to[i] - i, first = i;
-      while (i < below && to[i] - i == shift) {
-        i++;
+    if (below < LONG_RUN * runs) {
+      for (int i = j; i < below; i++) {
+        column[to[i]] += from[i];
       }
-      double *restrict target = column + shift;
-      for (int t = first; t < i; t++) {
-        target[t] += from[t];
-      }
-    }
-  }
-}
-
-/* Unblocked L S L^T of the leading n x n block. Returns the number of negative pivots. A pivot
- * that vanishes against the block's scale is replaced by that scale's round-off. */
-static int factor_block(int n, double *a, size_t lead, double *sign) {
-  int negative = 0;
-  double scale = 0;
-  for (int j = 0; j < n; j++) {
-    scale = fmax(scale, fabs(a[(size_t)j * (lead + 1)]));
-  }
-  double least = 1e-300 + 1e-18 * scale;
-  for (int j = 0; j < n; j++) {
-    double *restrict column = a + (size_t)j * lead;
-    double pivot = column[j];
-    sign[j] = pivot >= 0 ? 1 : -1;
-    negative += pivot < 0;
-    double root = sqrt(fmax(fabs(pivot), least));
-    column[j] = root;
-    double inverse = sign[j] / root;
-    for (int i = j + 1; i < n; i++) {
-      column[i] *= inverse;
-    }
-    for (int k = j + 1; k < n; k++) {
-      double factor = sign[j] * column[k];
-      double *restrict target = a + (size_t)k * lead;
-      for (int i = k; i < n; i++) {
-        target[i] -= factor * column[i];
-      }
-    }
-  }
-  return negative;
-}
-
-/* target -= L S L^T for `columns` columns of L (height rows, leading dimension lead), of which
- * the columns with sign -1 are added back twice. Only the lower triangle counts. */
-static void rank_update(int height, int columns, const double *l, size_t lead, const double *sign,
-                        int negative, double *target) {
-  int ld = (int)lead;
-  cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, height, columns, -1, l, ld, 1, target, ld);
-  for (int j = 0; negative > 0 && j < columns; j++) {
-    if (sign[j] < 0) {
-      cblas_dsyr(CblasColMajor, CblasLower, height, 2, l + (size_t)j * lead, 1, target, ld);
-    }
-  }
-}
-
-/* The same for the rectangle below the triangle: target (height x width) -= L2 S L1^T. */
-static void rectangle_update(int height, int width, int columns, const double *l1, const double *l2,
-                             size_t lead, const double *sign, int negative, double *target) {
-  int ld = (int)lead;
-  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, height, width, columns, -1, l2, ld, l1, ld,
-              1, target, ld);
-  for (int j = 0; negative > 0 && j < columns; j++) {
-    if (sign[j] < 0) {
-      cblas_dger(CblasColMajor, height, width, 2, l2 + (size_t)j * lead, 1, l1 + (size_t)j * lead,
-                 1, target, ld);
-    }
-  }
-}
-
-/* Eliminates the columns of a front panel by panel; the update matrix is left in the trailing
- * square. Returns the number of negative pivots. */
-static int eliminate(const struct front *front, double *a, double *sign) {
-  size_t lead = (size_t)front->rows;
-  int total = 0, below = front->rows - front->columns;
-  for (int b = 0; b < front->columns; b += PANEL) {
-    int width = front->columns - b < PANEL ? front->columns - b : PANEL;
-    double *diagonal = a + (size_t)b * (lead + 1);
-    int negative = factor_block(width, diagonal, lead, sign + b);
-    total += negative;
-    int rest = front->rows - b - width;
-    if (rest == 0) {
       continue;
     }
-    double *panel = diagonal + width;
-    cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, rest, width, 1,
-                diagonal, (int)lead, panel, (int)lead);
-    for (int j = 0; negative > 0 && j < width; j++) {
-      if (sign[b + j] < 0) {
-        cblas_dscal(rest, -1, panel + (size_t)j * lead, 1);
-      }
+    while (f->run[at + 1] <= j) {
+      at++;
     }
-    int inside = front->columns - b - width;
-    if (inside > 0) {
-      double *target = panel + (size_t)width * lead;
-      rank_update(inside, width, panel, lead, sign + b, negative, target);
-      if (below > 0) {
-        rectangle_update(below, inside, width, panel, panel + inside, lead, sign + b, negative,
-                         target + inside);
+    for (int q = at, i = j; q < runs; i = f->run[++q]) {
+      double *restrict target = column + to[i] - i;
+      for (int end = f->run[q + 1]; i < end; i++) {
+        target[i] += from[i];
       }
     }
   }
-  if (below > 0) {
-    rank_update(below, front->columns, a + front->columns, lead, sign, total,
-                a + (size_t)front->columns * (lead + 1));
-  }
-  return total;
 }
 
-/* Moves L to its place and the update matrix to the stack. */
-static void store_front(struct ldlt *f, const struct front *front) {
-  size_t lead = (size_t)front->rows, columns = (size_t)front->columns;
-  double *value = f->value + front->value;
-  for (size_t j = 0; j < columns; j++) {
-    memcpy(value + j * lead + j, f->work + j * lead + j, sizeof *value * (lead - j));
+/* Columns of a child's update matrix that its parent eliminates. */
+static int columns_taken(const struct ldlt *f, const struct front *child, const struct front *to) {
+  const int *row = f->parent_row + child->row + child->columns;
+  int count = 0, below = child->rows - child->columns;
+  while (count < below && row[count] < to->columns) {
+    count++;
   }
-  if (front->parent < 0) {
-    return;
+  return count;
+}
+
+/* Clears a front and adds its cliques. */
+static void open_front(struct ldlt *f, const struct front *front, const double *const *values) {
+  size_t lead = (size_t)front->rows, below = (size_t)(front->rows - front->columns);
+  double *l = f->value + front->value, *update = f->stack[front->level] + front->stack;
+  memset(l, 0, sizeof *l * lead * (size_t)front->columns);
+  for (int j = 0; j < front->rows; j++) {
+    f->column[j] = j < front->columns
+                       ? l + (size_t)j * lead
+                       : update + (size_t)(j - front->columns) * below - front->columns;
   }
-  size_t below = lead - columns;
-  double *update = f->stack + front->stack;
-  for (size_t j = 0; j < below; j++) {
-    memcpy(update + j * below + j, f->work + (columns + j) * (lead + 1),
-           sizeof *update * (below - j));
+  if (front->clique_count > 0) {
+    memset(update, 0, sizeof *update * below * below);
+  }
+  for (int q = 0; q < front->clique_count; q++) {
+    int c = f->clique[front->clique_first + q];
+    if (values[c]) {
+      add_clique(f->clique_row + f->clique_start[c], f->clique_start[c + 1] - f->clique_start[c],
+                 values[c], f->column);
+    }
   }
 }
 
@@ -170,22 +103,25 @@ int ldlt_factor(struct ldlt *f, const double *const *values) {
   int negative = 0, waiting = 0;
   for (int k = 0; k < f->front_count; k++) {
     const struct front *front = &f->front[k];
-    size_t lead = (size_t)front->rows;
-    for (size_t j = 0; j < lead; j++) {
-      memset(f->work + j * (lead + 1), 0, sizeof *f->work * (lead - j));
+    int first = waiting;
+    open_front(f, front, values);
+    while (first > 0 && f->front[f->pending[first - 1]].parent == k) {
+      const struct front *child = &f->front[f->pending[--first]];
+      extend_add(f, child, 0, columns_taken(f, child, front));
     }
-    for (int q = 0; q < front->clique_count; q++) {
-      int c = f->clique[front->clique_first + q];
-      if (values[c]) {
-        add_clique(f->clique_row + f->clique_start[c], f->clique_start[c + 1] - f->clique_start[c],
-                   values[c], f->work, lead);
-      }
+    struct ldlt_dense dense = {.rows = front->rows,
+                               .columns = front->columns,
+                               .l = f->value + front->value,
+                               .update = f->stack[front->level] + front->stack,
+                               .add = front->clique_count > 0,
+                               .sign = f->sign + front->first,
+                               .pack = f->work};
+    negative += ldlt_front_eliminate(&dense);
+    /* What goes to the update matrix is added after it was written, which saves clearing it. */
+    while (waiting > first) {
+      const struct front *child = &f->front[f->pending[--waiting]];
+      extend_add(f, child, columns_taken(f, child, front), child->rows - child->columns);
     }
-    while (waiting > 0 && f->front[f->pending[waiting - 1]].parent == k) {
-      extend_add(f, &f->front[f->pending[--waiting]], f->work, lead);
-    }
-    negative += eliminate(front, f->work, f->sign + front->first);
-    store_front(f, front);
     if (front->parent >= 0) {
       f->pending[waiting++] = k;
     }

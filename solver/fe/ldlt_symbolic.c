@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <suitesparse/cholmod.h>
+#include "solver/fe/ldlt_front.h"
 #include "solver/fe/ldlt_internal.h"
 
 /* Working data of one analysis: the graph of nodes that carry unknowns. */
@@ -197,11 +198,9 @@ static enum status expand_fronts(struct analysis *a, struct ldlt *f) {
   return STATUS_OK;
 }
 
-/* Parents, the places of a front's lower rows in its parent, and the layout of the stack of
- * update matrices in postorder. Returns the stack's size, or SIZE_MAX if the tree is not in
+/* Parents, and the places of a front's lower rows in its parent. False if the tree is not in
  * postorder. */
-static size_t link_fronts(const struct analysis *a, struct ldlt *f) {
-  size_t top = 0, largest = 0;
+static bool link_fronts(const struct analysis *a, struct ldlt *f) {
   int waiting = 0;
   for (int k = 0; k < f->front_count; k++) {
     struct front *front = &f->front[k];
@@ -215,21 +214,41 @@ static size_t link_fronts(const struct analysis *a, struct ldlt *f) {
           at++;
         }
         if (at == front->rows) {
-          return (size_t)-1;
+          return false;
         }
         f->parent_row[child->row + (size_t)i] = at;
       }
-      top = child->stack;
     }
-    front->stack = top;
     if (front->parent >= 0) {
-      size_t below = (size_t)(front->rows - front->columns);
-      top += below * below;
-      largest = top > largest ? top : largest;
       f->pending[waiting++] = k;
     }
   }
-  return waiting == 0 ? largest : (size_t)-1;
+  return waiting == 0;
+}
+
+/* Places of the update matrices on the two stacks, in postorder. */
+static void lay_stacks(struct ldlt *f, size_t size[2]) {
+  size_t top[2] = {0, 0};
+  int waiting = 0;
+  for (int k = f->front_count - 1; k >= 0; k--) {
+    int parent = f->front[k].parent;
+    f->front[k].level = parent < 0 ? 0 : 1 - f->front[parent].level;
+  }
+  size[0] = size[1] = 0;
+  for (int k = 0; k < f->front_count; k++) {
+    struct front *front = &f->front[k];
+    int level = front->level;
+    while (waiting > 0 && f->front[f->pending[waiting - 1]].parent == k) {
+      top[1 - level] = f->front[f->pending[--waiting]].stack;
+    }
+    front->stack = top[level];
+    if (front->parent >= 0) {
+      size_t below = (size_t)(front->rows - front->columns);
+      top[level] += below * below;
+      size[level] = top[level] > size[level] ? top[level] : size[level];
+      f->pending[waiting++] = k;
+    }
+  }
 }
 
 /* Gives every clique to the front that eliminates its first unknown. */
@@ -289,18 +308,28 @@ done:
   return status;
 }
 
-static enum status allocate_values(struct ldlt *f, size_t stack) {
-  size_t front = (size_t)f->statistics.largest_front * (size_t)f->statistics.largest_front;
-  size_t entries = f->statistics.factor_entries;
+static enum status allocate_values(struct ldlt *f) {
+  size_t stack[2], work = 0, entries = f->statistics.factor_entries;
+  size_t largest = (size_t)f->statistics.largest_front;
+  lay_stacks(f, stack);
+  for (int k = 0; k < f->front_count; k++) {
+    size_t needed = ldlt_front_work(f->front[k].rows, f->front[k].columns);
+    work = needed > work ? needed : work;
+  }
   f->value = malloc(sizeof *f->value * (entries + 1));
   f->sign = malloc(sizeof *f->sign * ((size_t)f->dof_count + 1));
-  f->work = malloc(sizeof *f->work * (front + 1));
-  f->stack = malloc(sizeof *f->stack * (stack + 1));
+  f->work = malloc(sizeof *f->work * (work + 1));
+  f->column = malloc(sizeof *f->column * (largest + 1));
+  f->run = malloc(sizeof *f->run * (largest + 1));
+  f->stack[0] = malloc(sizeof **f->stack * (stack[0] + 1));
+  f->stack[1] = malloc(sizeof **f->stack * (stack[1] + 1));
   f->vector = malloc(sizeof *f->vector * (2 * (size_t)f->dof_count + 1));
   f->statistics.memory_bytes =
-      sizeof(double) * (entries + front + stack + 3 * (size_t)f->dof_count) +
+      sizeof(double) * (entries + work + stack[0] + stack[1] + 3 * (size_t)f->dof_count) +
       sizeof(int) * (size_t)f->clique_start[f->clique_count];
-  return f->value && f->sign && f->work && f->stack && f->vector ? STATUS_OK : STATUS_NO_MEMORY;
+  bool complete = f->value && f->sign && f->work && f->column && f->run && f->stack[0] &&
+                  f->stack[1] && f->vector;
+  return complete ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
 static enum status build(struct analysis *a, struct ldlt *f) {
@@ -321,12 +350,11 @@ static enum status build(struct analysis *a, struct ldlt *f) {
   if (!f->pending) {
     return STATUS_NO_MEMORY;
   }
-  size_t stack = link_fronts(a, f);
-  if (stack == (size_t)-1) {
+  if (!link_fronts(a, f)) {
     return STATUS_INTERNAL;
   }
   status = place_cliques(a, f);
-  return status == STATUS_OK ? allocate_values(f, stack) : status;
+  return status == STATUS_OK ? allocate_values(f) : status;
 }
 
 enum status ldlt_create(const struct ldlt_pattern *pattern, struct ldlt **out,
@@ -372,7 +400,10 @@ void ldlt_destroy(struct ldlt *f) {
   free(f->value);
   free(f->sign);
   free(f->work);
-  free(f->stack);
+  free(f->column);
+  free(f->run);
+  free(f->stack[0]);
+  free(f->stack[1]);
   free(f->vector);
   free(f->pending);
   free(f);
