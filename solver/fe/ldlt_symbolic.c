@@ -106,24 +106,39 @@ done:
   return graph;
 }
 
-static enum status order_nodes(struct analysis *a) {
-  cholmod_common *c = &a->common;
-  c->print = 0;
-  /* Minimum degree wins on thin-walled bodies, nested dissection on larger and touching ones:
-   * both are tried, the one with the smaller factor is kept. */
-  c->nmethods = 2;
-  c->method[0].ordering = CHOLMOD_AMD;
-  c->method[1].ordering = CHOLMOD_METIS;
+/* Orders and analyses by one method. A node carries three unknowns, so the limits for merging
+ * small supernodes are smaller than CHOLMOD's own, which count columns. */
+static cholmod_factor *analyse_graph(cholmod_sparse *graph, int ordering, cholmod_common *c) {
+  c->nmethods = 1;
+  c->method[0].ordering = ordering;
   c->supernodal = CHOLMOD_SUPERNODAL;
   c->postorder = 1;
-  /* A node carries three unknowns, so the limits for merging small supernodes are smaller than
-   * CHOLMOD's own, which count columns. */
   c->nrelax[0] = 4;
   c->nrelax[1] = 10;
   c->nrelax[2] = 24;
+  return cholmod_analyze(graph, c);
+}
+
+/* Minimum degree wins on thin-walled bodies, nested dissection on larger and touching ones. It
+ * takes several times as long, as long as some factorisations of a small body, so that it is tried
+ * only where a node costs much. The order with the fewer operations is kept. */
+static enum status order_nodes(struct analysis *a) {
+  static const double much = 1.5e4; /* operations on the graph of nodes */
+  cholmod_common *c = &a->common;
+  c->print = 0;
   cholmod_sparse *graph = node_graph(a);
   if (graph) {
-    a->symbolic = cholmod_analyze(graph, c);
+    a->symbolic = analyse_graph(graph, CHOLMOD_AMD, c);
+  }
+  double operations = c->fl;
+  if (a->symbolic && operations > much * a->active_count) {
+    cholmod_factor *other = analyse_graph(graph, CHOLMOD_METIS, c);
+    if (other && c->fl < operations) {
+      cholmod_factor *swap = a->symbolic;
+      a->symbolic = other;
+      other = swap;
+    }
+    cholmod_free_factor(&other, c);
   }
   cholmod_free_sparse(&graph, c);
   return a->symbolic ? STATUS_OK : STATUS_NO_MEMORY;

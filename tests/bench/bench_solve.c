@@ -74,7 +74,8 @@ static void print_timing(const struct timing *t, double rate) {
   struct rusage usage;
   getrusage(RUSAGE_SELF, &usage);
   printf("%d elements, %d unknowns\n", t->elements, t->unknowns);
-  printf("wall %.3f s, cpu %.3f s, %d factorisations\n", t->wall, t->cpu, p->factorizations);
+  printf("wall %.3f s, cpu %.3f s, %d factorisations, %d analyses\n", t->wall, t->cpu,
+         p->factorizations, p->analyses);
   print_part("mesh and analysis", t->setup, 0, t->cpu);
   print_part("assembly", p->assembly_s, p->assemblies, t->cpu);
   print_part("residual", p->residual_s, p->residuals, t->cpu);
