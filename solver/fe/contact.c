@@ -33,7 +33,7 @@ double contact_traction(const struct contact *contact, const struct contact_poin
   double traction = contact_law(contact->stiffness, contact->smoothing, x, slope);
   if (point->gain > 0) {
     *slope *= point->gain;
-    traction = point->lambda + point->gain * (traction - point->lambda);
+    traction = point->anchor + point->gain * (traction - point->anchor);
   }
   return traction;
 }
@@ -44,7 +44,7 @@ void contact_follow(struct contact *contact, double cap) {
     struct contact_point *point = &contact->point[i];
     point->gain = 0;
     if (cap > 0 && point->valid) {
-      contact_traction(contact, point, &slope);
+      point->anchor = contact_traction(contact, point, &slope);
       point->gain = slope < eps * (1 - 1 / cap) ? 1 / (1 - slope / eps) : cap;
     }
   }

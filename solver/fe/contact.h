@@ -42,6 +42,7 @@ struct contact_point {
   int pair;        /* its partner, -1 for none; unused by points of planes */
   bool valid;      /* the gap is that of a point on the (slightly extended) partner */
   double gain;     /* 0, or how much faster the traction changes: see contact_follow */
+  double anchor;   /* with a gain: the traction about which it changes faster, Pa */
 };
 
 /* Rigid half space: the body stays where normal . (x - point) >= 0. */
@@ -123,8 +124,8 @@ double contact_update_multipliers(struct contact *contact, double *relaxation);
 
 /* Prepares for derivatives of a state whose multipliers have settled. There they follow the
  * tractions, d lambda = dt, so that the traction changes 1 / (1 - slope/eps) times as fast as with
- * held multipliers. Each point gets that gain, taken at its last gap: its traction becomes
- * lambda + gain (t - lambda). A closed point is rigid and gets `cap` (> 1). cap = 0 brings the
+ * held multipliers. Each point gets that gain about its traction t0 at its last gap: the traction
+ * becomes t0 + gain (t - t0). A closed point is rigid and gets `cap` (> 1). cap = 0 brings the
  * ordinary law back. */
 void contact_follow(struct contact *contact, double cap);
 

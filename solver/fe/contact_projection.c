@@ -39,7 +39,7 @@ bool projection_find(double master[QUAD9_NODES][3], const double slave[3], doubl
     double r1 = vec3_dot(p->distance, p->tangent[0]), r2 = vec3_dot(p->distance, p->tangent[1]);
     double d1 = (p->c22 * r1 - p->c12 * r2) / determinant;
     double d2 = (p->c11 * r2 - p->c12 * r1) / determinant;
-    if (fabs(d1) + fabs(d2) < 1e-10) {
+    if (fabs(d1) + fabs(d2) < 1e-12) {
       return true;
     }
     xi[0] = fmax(-2, fmin(2, xi[0] + d1));

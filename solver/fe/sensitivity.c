@@ -6,19 +6,19 @@
 
 /* A closed contact this much stiffer than its penalty is rigid to more digits than derivatives
  * are given with, and still far from the limits of the factorisation. */
-static const double rigid_contact = 1e5;
+static const double rigid_contact = 3e5;
 
 /* Accuracy of the states that are linearised about: displacements relative to the body's length,
- * contact tractions relative to the pressure, and to the shear modulus. */
+ * contact tractions relative to the pressure and to the shear modulus. */
 static const double step_tolerance = 1e-9;
 static const double traction_tolerance = 1e-6;
 static const double traction_floor = 1e-8;
 
-/* A correction of this part of the body's length, found with the multipliers following, tells
- * that contact has not settled: the tangent would be that of points about to part. */
-static const double unsettled = 1e-5;
+/* Tractions so much further from their multipliers are unsettled: some of the points would be
+ * about to part, and the tangent not that of the settled contact. */
+static const double unsettled = 100;
 
-enum { CORRECTIONS = 4 };
+enum { ATTEMPTS = 4 };
 
 enum status sensitivity_create(const struct mesh *mesh, const struct material_spec *material,
                                bool use_contact, const double gravity[3], struct sensitivity **out,
@@ -48,8 +48,7 @@ enum status sensitivity_create(const struct mesh *mesh, const struct material_sp
   s->stiffness = s->model->contact.stiffness;
   s->smoothing = s->model->contact.smoothing;
   s->cap = rigid_contact;
-  s->step = malloc(sizeof *s->step * ((size_t)s->model->dof_count + 1));
-  status = s->step ? state_create(s->model, &s->state) : STATUS_NO_MEMORY;
+  status = state_create(s->model, &s->state);
   if (status == STATUS_OK) {
     status = equilibrium_create(s->model, &s->solver, error);
   }
@@ -78,86 +77,64 @@ void sensitivity_destroy(struct sensitivity *s) {
   model_destroy(s->model);
   free(s->mesh.x);
   free(s->x);
-  free(s->step);
   free(s);
 }
 
 /* ---- the linearisation -------------------------------------------------------------------- */
 
-/* Newton's step about s->state with multipliers that follow, into s->step. Returns its root mean
- * square nodal length, or a negative number when an element is turned inside out. */
-static double find_step(struct sensitivity *s) {
-  struct fe_model *m = s->model;
-  double sum = 0;
-  contact_follow(&m->contact, 0);
-  if (model_search_contact(m, &s->state) != STATUS_OK ||
-      model_evaluate(m, &s->state, &s->load, false) != STATUS_OK) {
-    return -1;
+/* Largest difference between traction and multiplier, Pa; renews the tractions. */
+static double imbalance(struct sensitivity *s) {
+  struct contact *contact = &s->model->contact;
+  double most = 0;
+  for (int i = 0; i < contact->point_count; i++) {
+    contact->point[i].lambda = s->state.lambda[i];
   }
-  contact_follow(&m->contact, s->cap);
-  if (model_evaluate(m, &s->state, &s->load, true) != STATUS_OK) {
-    return -1;
+  if (model_evaluate(s->model, &s->state, &s->load, false) != STATUS_OK) {
+    return INFINITY;
   }
-  model_factor(m);
-  model_solve(m, m->residual, s->step);
-  for (int i = 0; i < m->dof_count; i++) {
-    s->step[i] = -s->step[i];
-    sum += s->step[i] * s->step[i];
+  for (int i = 0; i < contact->point_count; i++) {
+    if (contact->point[i].valid) {
+      most = fmax(most, fabs(contact->point[i].traction - contact->point[i].lambda));
+    }
   }
-  return sqrt(3 * sum / m->dof_count);
+  return most;
 }
 
-static void take_step(struct sensitivity *s) {
-  struct fe_model *m = s->model;
-  model_recover(m, &s->state, s->step, 1);
-  for (int d = 0; d < 3 * s->mesh.node_count; d++) {
-    s->state.u[d] += m->equation[d] >= 0 ? s->step[m->equation[d]] : 0;
+/* Brings a copy of the state closer to equilibrium than the load path needs. */
+static enum status settle(struct sensitivity *s, const struct fe_state *state) {
+  double mu = material_shear_modulus(&s->model->material);
+  double tolerance = fmax(traction_tolerance * s->load.pressure, traction_floor * mu);
+  double rest = INFINITY;
+  enum status status = STATUS_OK;
+  state_copy(s->model, &s->state, state);
+  s->solver->options.traction_tolerance = tolerance;
+  for (int k = 0; status == STATUS_OK && rest > tolerance && k < ATTEMPTS; k++) {
+    int iterations;
+    s->solver->factor_fits = false;
+    status = equilibrium_solve(s->solver, &s->load, s->load.pressure, &s->state, &iterations);
+    rest = imbalance(s);
   }
-  model_evaluate(m, &s->state, &s->load, false);
-  for (int i = 0; i < m->contact.point_count; i++) {
-    m->contact.point[i].lambda = fmax(0, m->contact.point[i].traction);
-  }
-}
-
-/* Brings s->state closer to equilibrium than it came from the load path, first as the path does,
- * with held multipliers, which finds out what touches. Where that fails the state stays. */
-static void settle(struct sensitivity *s, const struct fe_state *state) {
-  struct fe_model *m = s->model;
-  double mu = material_shear_modulus(&m->material);
-  int iterations;
-  contact_follow(&m->contact, 0);
-  s->solver->factor_fits = false;
-  s->solver->options.traction_tolerance =
-      fmax(traction_tolerance * s->load.pressure, traction_floor * mu);
-  state_copy(m, &s->state, state);
-  enum status status =
-      equilibrium_solve(s->solver, &s->load, s->load.pressure, &s->state, &iterations);
-  if (status != STATUS_OK) {
-    state_copy(m, &s->state, state);
-  }
-  for (int i = 0; i < m->contact.point_count; i++) {
-    m->contact.point[i].lambda = s->state.lambda[i];
-  }
+  return status == STATUS_OK && !(rest <= unsettled * tolerance) ? STATUS_DIVERGED : status;
 }
 
 enum status sensitivity_linearise(struct sensitivity *s, const struct fe_state *state,
                                   const struct fe_load *load) {
+  struct fe_model *m = s->model;
+  contact_follow(&m->contact, 0);
   enum status status = sensitivity_place(s, &s->original);
-  if (status != STATUS_OK) {
-    return status;
+  if (status == STATUS_OK) {
+    s->load = *load;
+    s->load.stiffness_pressure = load->pressure;
+    status = settle(s, state);
   }
-  s->load = *load;
-  s->load.stiffness_pressure = load->pressure;
-  settle(s, state);
-  double size = find_step(s);
-  for (int k = 0; size > step_tolerance * s->length && k < CORRECTIONS; k++) {
-    take_step(s);
-    size = find_step(s);
+  if (status == STATUS_OK) {
+    contact_follow(&m->contact, s->cap);
+    status = model_evaluate(m, &s->state, &s->load, true);
   }
-  if (size < 0) {
-    return STATUS_INVERTED;
+  if (status == STATUS_OK) {
+    model_factor(m);
   }
-  return size < unsettled * s->length ? STATUS_OK : STATUS_DIVERGED;
+  return status;
 }
 
 void sensitivity_adjoint(struct sensitivity *s, const double *gradient, double *z) {

@@ -26,7 +26,6 @@ struct sensitivity {
   struct mesh mesh;        /* shares all but x with the mesh it was created from */
   struct variant original; /* the body itself */
   double *x;               /* of the original */
-  double *step;            /* dof_count */
   double gravity[3];
   double stiffness, smoothing; /* of the contact of the original */
   double length;               /* extent of the body, m */
@@ -42,12 +41,12 @@ enum status sensitivity_create(const struct mesh *mesh, const struct material_sp
 void sensitivity_destroy(struct sensitivity *s);
 
 /* Factorises the tangent at a converged state, having brought a copy of it (s->state) closer to
- * equilibrium than the load path needs. The body is then the original. STATUS_OK; INVERTED; or
- * DIVERGED when contact does not settle. */
+ * equilibrium than the load path needs. The body is then the original. STATUS_OK; the failures of
+ * equilibrium_solve; or DIVERGED when contact does not settle. */
 enum status sensitivity_linearise(struct sensitivity *s, const struct fe_state *state,
                                   const struct fe_load *load);
 
-/* z = K^-1 gradient, both dof_count. They may be the same array. */
+/* z = K^-1 gradient, both dof_count; they may be the same array. */
 void sensitivity_adjoint(struct sensitivity *s, const double *gradient, double *z);
 
 /* Gives s->model the nodes and the material of a variant; the state stays. STATUS_GEOMETRY when

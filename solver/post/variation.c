@@ -7,7 +7,7 @@
 
 /* Half the distance of the sides, relative to the parameter or to one of its unit, whichever is
  * more: the errors of truncation and of rounding then both stay below 1e-8. */
-static const double relative_step = 1e-5;
+static const double relative_step = 3e-6;
 
 bool variation_one_sided(const struct job_spec *spec, const struct job_parameter *parameter) {
   return spec->half_model && (parameter->offset == offsetof(struct job_spec, given.taper_left) ||
