@@ -5,7 +5,8 @@
 #include "tests/bench/linear_solvers.h"
 
 bool linear_repeat_again(struct linear_repeat *repeat) {
-  return repeat->count < 3 || (repeat->count < 40 && repeat->spent < 0.5);
+  return repeat->count < 1 || (repeat->count < 3 && repeat->spent < 4) ||
+         (repeat->count < 40 && repeat->spent < 0.5);
 }
 
 void linear_repeat_begin(struct linear_repeat *repeat) {

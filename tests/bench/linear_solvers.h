@@ -18,8 +18,8 @@ struct linear_figures {
   int negative;    /* negative pivots; -1 when the solver does not say */
 };
 
-/* Times of repeated work: `again` is true until at least three repetitions and half a second are
- * spent, forty at most. */
+/* Times of repeated work: `again` is true until half a second and three repetitions are spent, but
+ * not beyond four seconds or forty repetitions. */
 struct linear_repeat {
   int count;
   double spent, start, best;
