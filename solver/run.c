@@ -1,8 +1,8 @@
 #include "solver/run.h"
 
 #include "solver/base/clock.h"
+#include "solver/estimate.h"
 #include "solver/fe/path.h"
-#include "solver/mesh/pneunet.h"
 #include "solver/post/deck.h"
 #include "solver/post/result.h"
 #include "solver/post/result_sensitivity.h"
@@ -11,10 +11,7 @@
 struct run {
   const struct job_spec *spec;
   const struct run_options *options;
-  struct mesh mesh;
-  struct fe_model *model;
-  struct equilibrium *solver;
-  struct fe_state state;
+  struct solve solve;
   struct result *result;
   struct result_sensitivity *sensitivity; /* NULL unless the job asks for derivatives */
 };
@@ -33,39 +30,36 @@ static enum status take_point(void *context, const struct path_point *point) {
                                                  : status;
 }
 
-static bool has_gravity(const struct load_spec *load) {
-  return load->gravity[0] != 0 || load->gravity[1] != 0 || load->gravity[2] != 0;
-}
-
 static enum status prepare(struct run *run, struct error *error) {
   const struct job_spec *spec = run->spec;
-  enum status status = model_create(&run->mesh, &spec->material, spec->contact, &run->model, error);
+  enum status status = solve_prepare(spec, &run->solve, error);
   if (status != STATUS_OK) {
     return status;
   }
-  if (has_gravity(&spec->load)) {
-    model_add_gravity(run->model, spec->load.gravity);
-  }
-  status = equilibrium_create(run->model, &run->solver, error);
-  if (status != STATUS_OK) {
-    return status;
-  }
-  struct equilibrium_options *o = &run->solver->options;
-  /* 1 % of the pressure between chambers leaves a penetration far below the wall thickness. */
-  o->traction_tolerance = 0.01 * spec->load.pressure_to;
-  o->deadline_s = spec->timeout_s > 0 ? clock_wall_s() + spec->timeout_s : 0;
-  o->cancelled = run->options->cancelled;
-  run->solver->verbose = run->options->verbose;
-  run->result = result_create(spec, run->model, run->solver->retraction);
-  if (!run->result || state_create(run->model, &run->state) != STATUS_OK) {
+  struct equilibrium *solver = run->solve.solver;
+  solver->options.deadline_s = spec->timeout_s > 0 ? clock_wall_s() + spec->timeout_s : 0;
+  solver->options.cancelled = run->options->cancelled;
+  solver->verbose = run->options->verbose;
+  run->result = result_create(spec, run->solve.model, solver->retraction);
+  if (!run->result) {
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the result");
   }
   const char *directory = run->options->out_dir;
   status = directory ? result_export(run->result, directory, error) : STATUS_OK;
   if (status == STATUS_OK && spec->sensitivity.count > 0) {
-    status = result_sensitivity_create(spec, &run->mesh, &run->sensitivity, error);
+    status = result_sensitivity_create(spec, &run->solve.mesh, &run->sensitivity, error);
   }
   return status;
+}
+
+/* How much the last state changes on a finer mesh; a failure becomes a warning of the result. */
+static void estimate(struct run *run) {
+  struct error error = {0};
+  struct sample finer;
+  double start = clock_cpu_s();
+  enum status status =
+      estimate_finer(run->spec, &run->solve, run->spec->load.pressure_to, &finer, &error);
+  result_compare(run->result, status == STATUS_OK ? &finer : NULL, &error, clock_cpu_s() - start);
 }
 
 static enum status solve(struct run *run, json_t **document, enum status *ending,
@@ -76,9 +70,12 @@ static enum status solve(struct run *run, json_t **document, enum status *ending
     return status;
   }
   struct path_options path = {run->spec->load.pressure_to, run->spec->load.steps,
-                              has_gravity(&run->spec->load), take_point, run};
+                              solve_has_gravity(run->spec), take_point, run};
   struct error end = {0};
-  *ending = path_follow(run->solver, &path, &run->state, &end);
+  *ending = path_follow(run->solve.solver, &path, &run->solve.state, &end);
+  if (*ending == STATUS_OK && run->spec->error_estimate) {
+    estimate(run);
+  }
   if (run->options->out_dir) {
     status = result_write_files(run->result, run->options->out_dir, error);
   }
@@ -99,20 +96,17 @@ enum status run_job(const struct job_spec *spec, const struct run_options *optio
   struct run run = {.spec = spec, .options = options};
   *document = NULL;
   *ending = STATUS_OK;
-  enum status status = pneunet_mesh(spec, &run.mesh, error);
+  enum status status = pneunet_mesh(spec, &run.solve.mesh, error);
   if (status != STATUS_OK) {
     return status;
   }
   if (options->deck_path) {
-    status = deck_write(&run.mesh, spec, "C3D20R", options->deck_path, error);
+    status = deck_write(&run.solve.mesh, spec, "C3D20R", options->deck_path, error);
   } else {
     status = solve(&run, document, ending, error);
   }
   result_sensitivity_destroy(run.sensitivity);
   result_destroy(run.result);
-  state_release(&run.state);
-  equilibrium_destroy(run.solver);
-  model_destroy(run.model);
-  mesh_release(&run.mesh);
+  solve_release(&run.solve);
   return status;
 }

@@ -142,6 +142,7 @@ static enum status read_response(const struct reader *reader, const json_t *docu
   reader_copy(spec->name, sizeof spec->name, json_string_value(json_object_get(document, "name")));
   spec->contact = json_is_true(json_object_get(document, "contact"));
   spec->accuracy = read_accuracy(json_string_value(json_object_get(document, "accuracy")));
+  spec->error_estimate = json_is_true(json_object_get(document, "error_estimate"));
   spec->timeout_s = reader_member(reader, document, "timeout", "s", 0.0);
   read_load(reader, json_object_get(document, "load"), &spec->load);
   read_mesh(json_object_get(document, "mesh"), &spec->mesh);

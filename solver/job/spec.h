@@ -128,6 +128,7 @@ struct job_spec {
   bool contact;
   bool half_model; /* symmetric about y = 0 in geometry and load */
   enum accuracy accuracy;
+  bool error_estimate; /* solve the end of the load path on a finer mesh, too */
   double timeout_s; /* 0: none */
   char hash[65];    /* SHA-256 of the canonical job text: sorted keys, defaults filled in, no
                      * name, labels and comments; 64 hexadecimal digits */

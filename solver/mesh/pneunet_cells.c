@@ -79,3 +79,9 @@ struct pneunet_cells pneunet_resolution(const struct job_spec *spec) {
   choose(spec->mesh.top, &cells.top);
   return cells;
 }
+
+void pneunet_refine(struct pneunet_cells *cells) {
+  cells->gap_wall.split = 2;
+  cells->half_width.split = 2;
+  cells->height.split = 2;
+}

@@ -91,13 +91,10 @@ enum status result_add(struct result *r, const struct path_point *point) {
     return STATUS_OK;
   }
   struct sample *s = &r->sample[r->sample_count];
-  *s = (struct sample){
-      .pressure = point->pressure, .min_gap = contact.min_gap, .iterations = point->iterations};
-  shape_measure(m->mesh, r->retraction, state->u, &s->shape);
-  s->cavity_volume = model_volume(m, state, NULL) * (m->mesh->half ? 2 : 1);
-  s->max_stretch = shape_stretch(m, state->u, NULL);
-  if (s->max_stretch < 0) {
-    return STATUS_NO_MEMORY;
+  *s = (struct sample){.pressure = point->pressure, .iterations = point->iterations};
+  enum status status = sample_measure(m, r->retraction, state, s);
+  if (status != STATUS_OK) {
+    return status;
   }
   r->penetration = fmax(r->penetration, -contact.min_gap);
   if (r->sample_count == 0) {
@@ -178,9 +175,7 @@ static json_t *metrics_object(const struct result *r) {
   if (fit_angle(r, m->cai_from, m->cai_to, &fit)) {
     set_real(o, "cai_rad_per_m_kPa", fit.slope * degree / r->spec->pneunet.length);
   }
-  /* Downwards is the direction of bending. */
-  double rest = mesh->x[3 * mesh->centreline[mesh->section_count - 1] + 2];
-  set_real(o, "tip_deflection_mm", 1e3 * (rest - s->shape.tip[2]));
+  set_real(o, "tip_deflection_mm", 1e3 * s->tip_deflection);
   if (r->onset >= 0) {
     set_real(o, "contact_onset_kPa", 1e-3 * r->onset);
   }
@@ -188,6 +183,7 @@ static json_t *metrics_object(const struct result *r) {
   set_real(o, "max_stretch", s->max_stretch);
   set_real(o, "min_gap_mm", 1e3 * s->min_gap);
   set_real(o, "max_penetration_mm", 1e3 * r->penetration);
+  result_set_errors(r, o);
   return o;
 }
 
@@ -207,13 +203,14 @@ static json_t *statistics_object(const struct result *r, double wall_s, double c
   struct rusage usage;
   getrusage(RUSAGE_SELF, &usage);
   struct ldlt_statistics l = ldlt_statistics(r->model->ldlt);
-  return json_pack("{s:i, s:i, s:i, s:i, s:i, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}",
+  return json_pack("{s:i, s:i, s:i, s:i, s:i, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}",
                    "unknowns", r->model->dof_count, "elements", r->model->mesh->element_count,
                    "factorizations", s->factorizations, "newton_iterations", s->newton_iterations,
                    "solves", s->solves, "gflop_per_factorization", 1e-9 * l.flops, "assembly_s",
                    s->assembly_s, "residual_s", s->residual_s, "factor_s", s->factor_s, "solve_s",
-                   s->solve_s, "contact_s", s->contact_s, "wall_s", wall_s, "cpu_s", cpu_s,
-                   "peak_memory_MB", 1e-3 * 1.024 * (double)usage.ru_maxrss);
+                   s->solve_s, "contact_s", s->contact_s, "estimate_s", r->estimate_s, "wall_s",
+                   wall_s, "cpu_s", cpu_s, "peak_memory_MB",
+                   1e-3 * 1.024 * (double)usage.ru_maxrss);
 }
 
 json_t *result_document(struct result *r, enum status status, const struct error *error,

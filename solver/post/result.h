@@ -5,6 +5,7 @@
 #include <jansson.h>
 #include "solver/fe/path.h"
 #include "solver/job/spec.h"
+#include "solver/post/sample.h"
 
 struct result;
 
@@ -27,6 +28,12 @@ enum status result_export(struct result *result, const char *directory, struct e
  * the same directory and lists all files as artifacts. Also returns the failure that ended the
  * path when files could not be written on the way: STATUS_IO or STATUS_NO_MEMORY. */
 enum status result_write_files(struct result *result, const char *directory, struct error *error);
+
+/* Tells what a finer mesh gives for the last recorded state, as measure of the metrics' errors.
+ * finer is NULL when that failed: `error` then says why, and becomes a warning. cpu_s is the CPU
+ * time it took. */
+void result_compare(struct result *result, const struct sample *finer, const struct error *error,
+                    double cpu_s);
 
 /* The document, a new reference; `status` and `error` tell how the path ended. wall_s and cpu_s
  * are those of the whole run. NULL when memory runs out. */

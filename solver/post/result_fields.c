@@ -32,6 +32,10 @@ json_t *result_warnings(const struct result *r) {
                                : "contact is off and chambers overlap by %.3f mm",
                            1e3 * r->penetration));
   }
+  if (r->estimate.status != STATUS_OK) {
+    json_array_append_new(list, json_sprintf("the errors of the metrics could not be estimated: %s",
+                                             r->estimate.message));
+  }
   if (bent > 1.5 * M_PI) {
     json_array_append_new(
         list, json_sprintf("the body bends by %.0f degrees: beyond about 270 it may meet itself, "

@@ -4,17 +4,6 @@
 
 #include "solver/post/export.h"
 #include "solver/post/result.h"
-#include "solver/post/shape.h"
-
-/* One recorded state in numbers. */
-struct sample {
-  double pressure; /* Pa */
-  struct shape shape;
-  double cavity_volume; /* m3, whole body */
-  double min_gap;       /* m, INFINITY without facing faces */
-  double max_stretch;
-  int iterations;
-};
 
 /* One end of the body's contact history: a converged state still open. */
 struct open_state {
@@ -36,10 +25,17 @@ struct result {
   struct fe_state first, last; /* recorded states */
   struct export *export;       /* NULL: no files are wanted */
   struct error failure;        /* of writing files on the way */
+  bool compared;               /* `finer` holds the last recorded state on a finer mesh */
+  struct sample finer;
+  double estimate_s;           /* CPU time of that, s */
+  struct error estimate;       /* why it failed */
 };
 
 /* The samples of the document, a new reference. */
 json_t *result_samples(const struct result *result);
+
+/* Adds the error estimates to the metrics, as "<metric>_error", when there is a finer solution. */
+void result_set_errors(const struct result *result, json_t *metrics);
 
 /* Warnings of the run as a JSON array, a new reference: unstable material, stretch beyond the
  * fit, overlapping chambers. */
