@@ -1,6 +1,6 @@
 /* How many of many different designs the solver carries to the end, and at what cost.
  *   bench_robustness [--count N] [--seed N] [--accuracy fast|standard|fine] [--steps N]
- *                    [--jobs N] [--limit SECONDS] [--only I] [--keep DIR] [--solver PATH]
+ *                    [--jobs N] [--limit CPU_SECONDS] [--only I] [--keep DIR] [--solver PATH]
  *                    [--json FILE]
  * Designs and jobs are those of robust_design.h; each is solved by a process of its own. */
 #include <getopt.h>
@@ -346,7 +346,7 @@ int main(int argc, char **argv) {
   if (!parse(argc, argv, &a)) {
     fprintf(stderr,
             "usage: %s [--count N] [--seed N] [--accuracy fast|standard|fine] [--steps N]\n"
-            "       [--jobs N] [--limit SECONDS] [--only I] [--keep DIR] [--solver PATH]\n"
+            "       [--jobs N] [--limit CPU_SECONDS] [--only I] [--keep DIR] [--solver PATH]\n"
             "       [--json FILE]\n",
             argv[0]);
     return EXIT_FAILURE;

@@ -11,13 +11,15 @@
 #include "solver/base/clock.h"
 
 static const double grace_s = 5;
+/* A command that waits instead of computing is ended after this multiple of its limit. */
+static const double wall_limit = 10;
 
 /* One running command. */
 struct slot {
   pid_t pid; /* 0: free */
   int k;
   double start;
-  bool asked, forced; /* to end */
+  double asked_at; /* wall time at which it was asked to end; 0: not yet */
 };
 
 /* Becomes the command; ends with the pool. */
@@ -49,25 +51,36 @@ static double seconds(struct timeval t) {
   return (double)t.tv_sec + 1e-6 * (double)t.tv_usec;
 }
 
+/* CPU time of a running process, s. */
+static double cpu_time(pid_t pid) {
+  clockid_t id;
+  struct timespec t = {0};
+  if (clock_getcpuclockid(pid, &id) == 0) {
+    clock_gettime(id, &t);
+  }
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
 /* Takes in the command when it has ended, and presses one that takes too long. */
 static void look_after(const struct pool *pool, struct slot *slot) {
   int status;
   struct rusage usage;
-  double wall = clock_wall_s() - slot->start;
+  double now = clock_wall_s(), wall = now - slot->start;
   if (wait4(slot->pid, &status, WNOHANG, &usage) == slot->pid) {
     struct pool_end end = {.started = true,
-                           .timed_out = slot->asked,
+                           .timed_out = slot->asked_at > 0,
                            .exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1,
                            .signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0,
                            .wall_s = wall,
                            .cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime)};
     slot->pid = 0;
     pool->finish(pool->context, slot->k, &end);
-  } else if (wall > pool->limit_s + grace_s && !slot->forced) {
-    slot->forced = true;
-    kill(slot->pid, SIGKILL);
-  } else if (wall > pool->limit_s && !slot->asked) {
-    slot->asked = true;
+  } else if (slot->asked_at > 0) {
+    if (now - slot->asked_at > grace_s) {
+      kill(slot->pid, SIGKILL);
+    }
+  } else if (wall > wall_limit * pool->limit_s || cpu_time(slot->pid) > pool->limit_s) {
+    slot->asked_at = now;
     kill(slot->pid, SIGTERM);
   }
 }

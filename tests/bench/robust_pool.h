@@ -15,7 +15,8 @@ struct pool_end {
 
 struct pool {
   int width;      /* commands at a time */
-  double limit_s; /* of each, wall time; five seconds later it is killed */
+  double limit_s; /* of each, CPU time (ten times that by the clock); then it is asked to end, and
+                   * killed five seconds later */
   int count;
   /* Arguments of command k, argv[0] being the program's path, ended by NULL, and where its output
    * goes; the arrays belong to the caller. */
