@@ -33,13 +33,16 @@ static bool cancelled(void *context) {
 }
 
 static const char usage[] =
-    "usage: pneulab-solve [--out DIR] [--events FILE] [--threads N] [--deck FILE] [--verbose] "
-    "JOB.json\n"
+    "usage: pneulab-solve [--out DIR] [--events FILE] [--threads N] [--deck FILE]\n"
+    "                     [--path-in FILE] [--path-out FILE] [--verbose] JOB.json\n"
     "  JOB.json        job document; - reads standard input\n"
     "  --out DIR       write fields, tables and a CalculiX deck there; made when missing\n"
     "  --events FILE   append progress as JSON lines\n"
     "  --threads N     threads of the dense linear algebra (default 1)\n"
     "  --deck FILE     write the problem as a CalculiX deck instead of solving it\n"
+    "  --path-out FILE keep the path of converged states there\n"
+    "  --path-in FILE  start from such a path of a design with the same mesh topology; where that\n"
+    "                  does not work the solve starts from the undeformed body by itself\n"
     "  --verbose       print iterations on standard error\n"
     "The result document goes to standard output. Exit status: 0 succeeded, 2 invalid job,\n"
     "3 stopped early (the result says why), 4 internal error, 5 cancelled.\n";
@@ -54,6 +57,7 @@ static bool parse_arguments(int argc, char **argv, struct arguments *a) {
   static const struct option options[] = {
       {"out", required_argument, NULL, 'o'},     {"events", required_argument, NULL, 'e'},
       {"threads", required_argument, NULL, 't'}, {"deck", required_argument, NULL, 'd'},
+      {"path-in", required_argument, NULL, 'i'}, {"path-out", required_argument, NULL, 'p'},
       {"verbose", no_argument, NULL, 'v'},       {"help", no_argument, NULL, 'h'},
       {"version", no_argument, NULL, 'V'},       {0}};
   int option;
@@ -70,6 +74,12 @@ static bool parse_arguments(int argc, char **argv, struct arguments *a) {
       break;
     case 'd':
       a->run.deck_path = optarg;
+      break;
+    case 'i':
+      a->run.path_in = optarg;
+      break;
+    case 'p':
+      a->run.path_out = optarg;
       break;
     case 'v':
       a->run.verbose = true;

@@ -2,7 +2,7 @@
 
 #include "solver/base/clock.h"
 #include "solver/estimate.h"
-#include "solver/fe/path.h"
+#include "solver/fe/warm.h"
 #include "solver/post/deck.h"
 #include "solver/post/result.h"
 #include "solver/post/result_sensitivity.h"
@@ -13,6 +13,8 @@ struct run {
   const struct run_options *options;
   struct solve solve;
   struct result *result;
+  struct path_record *from;               /* path to start from, or NULL */
+  struct path_record *path;               /* path to be kept, or NULL */
   struct result_sensitivity *sensitivity; /* NULL unless the job asks for derivatives */
 };
 
@@ -26,6 +28,9 @@ static enum status take_point(void *context, const struct path_point *point) {
     fflush(run->options->events);
   }
   enum status status = result_add(run->result, point);
+  if (status == STATUS_OK && run->path && point->recorded) {
+    status = path_record_add(run->path, point->pressure, point->state);
+  }
   return status == STATUS_OK && run->sensitivity ? result_sensitivity_add(run->sensitivity, point)
                                                  : status;
 }
@@ -62,6 +67,29 @@ static void estimate(struct run *run) {
   result_compare(run->result, status == STATUS_OK ? &finer : NULL, &error, clock_cpu_s() - start);
 }
 
+/* Opens the path to start from and the one to be kept, as asked for. */
+static enum status open_paths(struct run *run, struct error *error) {
+  enum status status = STATUS_OK;
+  if (run->options->path_in) {
+    status = path_record_read(run->options->path_in, &run->from, error);
+  }
+  if (status == STATUS_OK && run->options->path_out) {
+    status = path_record_create(run->solve.model, &run->path);
+  }
+  return status;
+}
+
+static enum status follow(struct run *run, struct error *error) {
+  struct path_options path = {run->spec->load.pressure_to, run->spec->load.steps,
+                              solve_has_gravity(run->spec), take_point, run};
+  bool warm = false;
+  enum status status = run->from ? path_follow_warm(run->solve.solver, &path, run->from,
+                                                    &run->solve.state, &warm, error)
+                                 : path_follow(run->solve.solver, &path, &run->solve.state, error);
+  result_note_start(run->result, warm);
+  return status;
+}
+
 static enum status solve(struct run *run, json_t **document, enum status *ending,
                          struct error *error) {
   double wall = clock_wall_s(), cpu = clock_cpu_s();
@@ -69,14 +97,19 @@ static enum status solve(struct run *run, json_t **document, enum status *ending
   if (status != STATUS_OK) {
     return status;
   }
-  struct path_options path = {run->spec->load.pressure_to, run->spec->load.steps,
-                              solve_has_gravity(run->spec), take_point, run};
+  status = open_paths(run, error);
+  if (status != STATUS_OK) {
+    return status;
+  }
   struct error end = {0};
-  *ending = path_follow(run->solve.solver, &path, &run->solve.state, &end);
+  *ending = follow(run, &end);
   if (*ending == STATUS_OK && run->spec->error_estimate) {
     estimate(run);
   }
-  if (run->options->out_dir) {
+  if (run->path) {
+    status = path_record_write(run->path, run->options->path_out, error);
+  }
+  if (status == STATUS_OK && run->options->out_dir) {
     status = result_write_files(run->result, run->options->out_dir, error);
   }
   if (status == STATUS_OK) {
@@ -105,6 +138,8 @@ enum status run_job(const struct job_spec *spec, const struct run_options *optio
   } else {
     status = solve(&run, document, ending, error);
   }
+  path_record_destroy(run.from);
+  path_record_destroy(run.path);
   result_sensitivity_destroy(run.sensitivity);
   result_destroy(run.result);
   solve_release(&run.solve);

@@ -9,6 +9,8 @@
 struct run_options {
   const char *out_dir;   /* directory for artifacts, NULL: none are written */
   const char *deck_path; /* CalculiX deck to write instead of solving, NULL: solve */
+  const char *path_in;   /* file of a neighbouring design's path to start from, NULL: none */
+  const char *path_out;  /* file for the path, for such use, NULL: none */
   FILE *events;          /* progress as JSON lines, NULL: none */
   bool verbose;          /* iterations on standard error */
   bool (*cancelled)(void *context);

@@ -241,6 +241,12 @@ void state_release(struct fe_state *state) {
   *state = (struct fe_state){0};
 }
 
+void state_clear(const struct fe_model *m, struct fe_state *state) {
+  memset(state->u, 0, sizeof *state->u * 3 * (size_t)m->mesh->node_count);
+  memset(state->p, 0, sizeof *state->p * ELEMENT_PRESSURES * (size_t)m->mesh->element_count);
+  memset(state->lambda, 0, sizeof *state->lambda * (size_t)m->contact.point_count);
+}
+
 void state_copy(const struct fe_model *m, struct fe_state *to, const struct fe_state *from) {
   memcpy(to->u, from->u, sizeof *to->u * 3 * (size_t)m->mesh->node_count);
   memcpy(to->p, from->p, sizeof *to->p * ELEMENT_PRESSURES * (size_t)m->mesh->element_count);

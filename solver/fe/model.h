@@ -72,6 +72,7 @@ enum status model_add_plane(struct fe_model *model, const double point[3], const
 
 enum status state_create(const struct fe_model *model, struct fe_state *state);
 void state_release(struct fe_state *state);
+void state_clear(const struct fe_model *model, struct fe_state *state);
 void state_copy(const struct fe_model *model, struct fe_state *to, const struct fe_state *from);
 
 /* Residual at the state into model->residual, and with `tangent` the cliques of the tangent; then
@@ -84,6 +85,9 @@ enum status model_evaluate(struct fe_model *model, const struct fe_state *state,
 /* Finds the partners of the contact at the state; the next tangent is analysed anew when other
  * faces may touch. STATUS_NO_MEMORY. */
 enum status model_search_contact(struct fe_model *model, const struct fe_state *state);
+
+/* Gives the contact the multipliers of the state. */
+void model_use_multipliers(struct fe_model *model, const struct fe_state *state);
 
 /* Renews the gaps of the known pairs at the state, whether or not the model uses contact. */
 void model_update_gaps(struct fe_model *model, const struct fe_state *state);

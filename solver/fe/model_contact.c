@@ -117,6 +117,12 @@ enum status model_evaluate_contact(struct fe_model *m, const double *u, bool tan
   return STATUS_OK;
 }
 
+void model_use_multipliers(struct fe_model *m, const struct fe_state *state) {
+  for (int i = 0; i < m->contact.point_count; i++) {
+    m->contact.point[i].lambda = state->lambda[i];
+  }
+}
+
 void model_update_gaps(struct fe_model *m, const struct fe_state *state) {
   for (int p = 0; p < m->contact.pair_count; p++) {
     int nodes[CONTACT_NODES];

@@ -203,14 +203,18 @@ static json_t *statistics_object(const struct result *r, double wall_s, double c
   struct rusage usage;
   getrusage(RUSAGE_SELF, &usage);
   struct ldlt_statistics l = ldlt_statistics(r->model->ldlt);
-  return json_pack("{s:i, s:i, s:i, s:i, s:i, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}",
-                   "unknowns", r->model->dof_count, "elements", r->model->mesh->element_count,
-                   "factorizations", s->factorizations, "newton_iterations", s->newton_iterations,
-                   "solves", s->solves, "gflop_per_factorization", 1e-9 * l.flops, "assembly_s",
-                   s->assembly_s, "residual_s", s->residual_s, "factor_s", s->factor_s, "solve_s",
-                   s->solve_s, "contact_s", s->contact_s, "estimate_s", r->estimate_s, "wall_s",
-                   wall_s, "cpu_s", cpu_s, "peak_memory_MB",
-                   1e-3 * 1.024 * (double)usage.ru_maxrss);
+  return json_pack(
+      "{s:i, s:i, s:i, s:i, s:i, s:i, s:b, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}",
+      "analyses", s->analyses, "unknowns", r->model->dof_count, "elements",
+      r->model->mesh->element_count, "factorizations", s->factorizations, "newton_iterations",
+      s->newton_iterations, "solves", s->solves, "warm_start", r->warm, "gflop_per_factorization",
+      1e-9 * l.flops, "assembly_s", s->assembly_s, "residual_s", s->residual_s, "factor_s",
+      s->factor_s, "solve_s", s->solve_s, "contact_s", s->contact_s, "estimate_s", r->estimate_s,
+      "wall_s", wall_s, "cpu_s", cpu_s, "peak_memory_MB", 1e-3 * 1.024 * (double)usage.ru_maxrss);
+}
+
+void result_note_start(struct result *r, bool warm) {
+  r->warm = warm;
 }
 
 json_t *result_document(struct result *r, enum status status, const struct error *error,

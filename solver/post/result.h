@@ -15,6 +15,9 @@ struct result *result_create(const struct job_spec *spec, struct fe_model *model
                              const struct retraction *retraction);
 void result_destroy(struct result *result);
 
+/* Notes whether the path started from that of a neighbouring design. */
+void result_note_start(struct result *result, bool warm);
+
 /* Takes in one converged state: recorded ones become samples and midlines, all of them serve to
  * find the onset of contact. STATUS_OK, STATUS_NO_MEMORY, or STATUS_IO when its files cannot be
  * written. */

@@ -23,6 +23,7 @@ struct result {
   double onset;                /* Pa, negative until contact */
   double penetration;          /* largest over recorded states, m */
   struct fe_state first, last; /* recorded states */
+  bool warm;                   /* the path started from a neighbouring design's */
   struct export *export;       /* NULL: no files are wanted */
   struct error failure;        /* of writing files on the way */
   bool compared;               /* `finer` holds the last recorded state on a finer mesh */
