@@ -10,20 +10,15 @@ enum { LONG_RUN = 8 };
 static void add_clique(const int *row, int count, const double *values, double *const *column) {
   for (int i = 0; i < count; i++) {
     int r = row[i];
-    if (r < 0) {
-      values += count - i;
-      continue;
-    }
-    double *own = column[r];
-    for (int j = i; j < count; j++) {
-      int c = row[j];
-      if (c >= r) {
-        own[c] += *values;
-      } else if (c >= 0) {
-        column[c][r] += *values;
+    if (r >= 0) {
+      for (int j = i; j < count; j++) {
+        int c = row[j], low = c < r ? c : r;
+        if (low >= 0) {
+          column[low][c < r ? r : c] += values[j - i];
+        }
       }
-      values++;
     }
+    values += count - i;
   }
 }
 

@@ -38,7 +38,12 @@ struct job_spec bench_resize(const struct job_spec *spec, const struct bench_siz
   resized.mesh = size->mesh;
   if (size->chambers > 0) {
     double pitch = p->cavity_length + 2 * p->gap_wall + p->chamber_gap;
-    p->length = size->chambers * pitch - p->chamber_gap;
+    double length = size->chambers * pitch - p->chamber_gap, flatter = fmin(1, p->length / length);
+    p->taper_top *= flatter;
+    p->taper_bottom *= flatter;
+    p->taper_left *= flatter;
+    p->taper_right *= flatter;
+    p->length = length;
     p->run_count = 1;
     p->runs[0].count = p->chamber_count = size->chambers;
   }

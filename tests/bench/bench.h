@@ -16,7 +16,8 @@ struct bench_size {
 bool bench_read_job(const char *path, struct job_spec *spec);
 
 /* The job with another mesh and, for size->chambers > 0, another number of chambers in the first
- * of its runs, the others dropped; the body's length follows. */
+ * of its runs, the others dropped; the body's length follows, and a longer body
+ * tapers at a smaller angle, so that its tip is as wide. */
 struct job_spec bench_resize(const struct job_spec *spec, const struct bench_size *size);
 
 /* Best rate of several products of 640 x 640 matrices on one thread, flop/s. */

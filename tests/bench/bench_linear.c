@@ -233,14 +233,16 @@ int main(int count, char **argument) {
   if (!bench_read_job(argument[optind], &job)) {
     return EXIT_FAILURE;
   }
-  json_t *list = json_array(), *document = NULL;
-  bool done = list != NULL;
+  json_t *list = json_array();
+  json_t *document = json_pack("{s:s, s:s, s:o, s:O}", "program", "bench_linear", "job", job.name,
+                               "machine", bench_machine(bench_dgemm_rate()), "cases", list);
+  bool done = document != NULL;
   for (size_t k = 0; done && k < sizeof cases / sizeof *cases; k++) {
-    done = cases[k].unknowns > limit || run_case(&job, &cases[k], list);
+    /* The file is renewed after every case: the last ones take minutes. */
+    done = cases[k].unknowns > limit ||
+           (run_case(&job, &cases[k], list) && (!path || bench_write_json(path, document)));
   }
-  document = json_pack("{s:s, s:s, s:o, s:o}", "program", "bench_linear", "job", job.name,
-                       "machine", bench_machine(bench_dgemm_rate()), "cases", list);
-  done = done && (!path || bench_write_json(path, document));
+  json_decref(list);
   json_decref(document);
   return done ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -294,12 +294,14 @@ int main(int count, char **argument) {
     return EXIT_FAILURE;
   }
   json_t *list = json_array();
-  for (size_t k = 0; k < sizeof all_series / sizeof *all_series; k++) {
-    json_array_append_new(list, run_series(&job, &all_series[k], limit, solve_limit));
-  }
-  json_t *document = json_pack("{s:s, s:s, s:o, s:o}", "program", "bench_scaling", "job", job.name,
+  json_t *document = json_pack("{s:s, s:s, s:o, s:O}", "program", "bench_scaling", "job", job.name,
                                "machine", bench_machine(bench_dgemm_rate()), "series", list);
-  bool done = !path || bench_write_json(path, document);
+  bool done = document != NULL;
+  for (size_t k = 0; done && k < sizeof all_series / sizeof *all_series; k++) {
+    json_array_append_new(list, run_series(&job, &all_series[k], limit, solve_limit));
+    done = !path || bench_write_json(path, document);
+  }
+  json_decref(list);
   json_decref(document);
   return done ? EXIT_SUCCESS : EXIT_FAILURE;
 }
