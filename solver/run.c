@@ -87,7 +87,7 @@ static enum status follow(struct run *run, struct error *error) {
                                                     &run->solve.state, &warm, error)
                                  : path_follow(run->solve.solver, &path, &run->solve.state, error);
   result_note_start(run->result, warm);
-  return status;
+  return result_cause(run->result, status, error);
 }
 
 static enum status solve(struct run *run, json_t **document, enum status *ending,

@@ -14,6 +14,13 @@ enum status solve_prepare(const struct job_spec *spec, struct solve *solve, stru
   if (solve_has_gravity(spec)) {
     model_add_gravity(solve->model, spec->load.gravity);
   }
+  for (int k = 0; k < spec->plane_count; k++) {
+    struct error behind = {0};
+    status = model_add_plane(solve->model, spec->plane[k].point, spec->plane[k].normal, &behind);
+    if (status != STATUS_OK) {
+      return error_set(error, status, "/planes", "plane %d: %s", k, behind.message);
+    }
+  }
   status = equilibrium_create(solve->model, &solve->solver, error);
   if (status != STATUS_OK) {
     return status;

@@ -99,6 +99,10 @@ enum status contact_search(struct contact *contact, const double *u, bool *chang
  * step has carried one part of the body into another. */
 double contact_intrusion(const struct contact *contact);
 
+/* Whether faces other than those of mesh->facing press on each other: a multiplier of theirs is
+ * not zero. */
+bool contact_folded(const struct contact *contact);
+
 /* Nodes of pair p: 9 of the slave face, then 9 of the master face. */
 void contact_nodes(const struct contact *contact, int pair, int nodes[CONTACT_NODES]);
 

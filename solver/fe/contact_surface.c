@@ -116,6 +116,17 @@ void contact_nodes(const struct contact *contact, int pair, int nodes[CONTACT_NO
   mesh_face_nodes(contact->mesh, &contact->face[p->master].face, nodes + QUAD9_NODES);
 }
 
+bool contact_folded(const struct contact *contact) {
+  for (int i = 0; i < QUAD9_POINTS * contact->face_count; i++) {
+    const struct contact_point *point = &contact->point[i];
+    if (point->pair >= contact->mesh->facing_count && point->lambda > 0 &&
+        contact->face[contact->pair[point->pair].slave].role <= 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
 static void add_surface_point(const struct contact_point *point, struct contact_summary *s) {
   s->min_gap = fmin(s->min_gap, point->gap);
   if (point->traction > 0) {

@@ -65,20 +65,29 @@ static bool ends_on_symmetry(const struct mesh *mesh, const int nodes[QUAD9_NODE
   return false;
 }
 
+/* Current positions of the nodes of face f. False when the face cannot touch plane k. */
+static bool plane_positions(const struct fe_model *m, const double *u, int k, int f,
+                            double x[QUAD9_NODES][3]) {
+  int nodes[QUAD9_NODES];
+  mesh_face_nodes(m->mesh, &m->contact.face[f].face, nodes);
+  if (m->contact.plane[k].symmetry && ends_on_symmetry(m->mesh, nodes)) {
+    return false;
+  }
+  for (int d = 0; d < 3 * QUAD9_NODES; d++) {
+    x[d / 3][d % 3] = m->mesh->x[3 * nodes[d / 3] + d % 3] + u[3 * nodes[d / 3] + d % 3];
+  }
+  return true;
+}
+
 static void evaluate_plane(struct fe_model *m, const double *u, int plane, bool tangent) {
   const struct contact_plane *k = &m->contact.plane[plane];
   for (int f = 0; f < m->contact.face_count; f++) {
     const struct mesh_face *face = &m->contact.face[f].face;
     int nodes[QUAD9_NODES];
     double x[QUAD9_NODES][3], r[3 * QUAD9_NODES], stiffness[QUAD9_NODES][QUAD9_NODES];
-    mesh_face_nodes(m->mesh, face, nodes);
-    if (k->symmetry && ends_on_symmetry(m->mesh, nodes)) {
-      continue;
-    }
-    for (int d = 0; d < 3 * QUAD9_NODES; d++) {
-      x[d / 3][d % 3] = m->mesh->x[3 * nodes[d / 3] + d % 3] + u[3 * nodes[d / 3] + d % 3];
-    }
-    if (contact_plane_evaluate(&m->contact, plane, f, x, r, stiffness)) {
+    if (plane_positions(m, u, plane, f, x) &&
+        contact_plane_evaluate(&m->contact, plane, f, x, r, stiffness)) {
+      mesh_face_nodes(m->mesh, face, nodes);
       add_force(m, nodes, QUAD9_NODES, r);
       if (tangent) {
         add_plane_stiffness(m, face, k->normal, stiffness);
@@ -129,5 +138,13 @@ void model_update_gaps(struct fe_model *m, const struct fe_state *state) {
     double x[CONTACT_NODES][3], r[CONTACT_DOFS];
     pair_positions(m, state->u, p, nodes, x);
     contact_evaluate(&m->contact, p, x, r, NULL);
+  }
+  for (int k = 0; k < m->contact.plane_count; k++) {
+    for (int f = 0; f < m->contact.face_count; f++) {
+      double x[QUAD9_NODES][3], r[3 * QUAD9_NODES], stiffness[QUAD9_NODES][QUAD9_NODES];
+      if (plane_positions(m, state->u, k, f, x)) {
+        contact_plane_evaluate(&m->contact, k, f, x, r, stiffness);
+      }
+    }
   }
 }

@@ -88,13 +88,19 @@ static enum status reach(struct walk *w, const struct stage *stage, double goal)
   return STATUS_OK;
 }
 
+/* Whether in the last converged state the body presses on itself beyond neighbouring chambers. */
+static bool folded(struct walk *w) {
+  model_use_multipliers(w->solver->model, w->state);
+  return w->solver->model->use_contact && contact_folded(&w->solver->model->contact);
+}
+
 static enum status walk_stage(struct walk *w, const struct stage *stage) {
   w->value = 0;
   w->step = stage->full;
   for (int record = 1; record <= stage->records; record++) {
     enum status status = reach(w, stage, stage->end * record / stage->records);
     if (status == STATUS_DIVERGED) {
-      return STATUS_STEP_MINIMUM;
+      return folded(w) ? STATUS_CONTACT : STATUS_STEP_MINIMUM;
     }
     if (status == STATUS_OK) {
       status = walk_visit(w, stage, !stage->dead, w->state, w->value);

@@ -86,6 +86,31 @@ static void read_load(const struct reader *reader, const json_t *load, struct lo
   }
 }
 
+static enum status read_planes(const struct reader *reader, const json_t *planes,
+                               struct job_spec *spec) {
+  size_t index;
+  const json_t *plane;
+  json_array_foreach(planes, index, plane) {
+    struct plane_spec *p = &spec->plane[spec->plane_count++];
+    double square = 0;
+    for (size_t i = 0; i < 3; i++) {
+      p->point[i] =
+          reader_quantity(reader, json_array_get(json_object_get(plane, "point"), i), "mm");
+      p->normal[i] = json_number_value(json_array_get(json_object_get(plane, "normal"), i));
+      square += p->normal[i] * p->normal[i];
+    }
+    if (square == 0) {
+      struct json_pointer pointer = {.length = 0};
+      json_pointer_key(&pointer, "planes");
+      json_pointer_index(&pointer, index);
+      json_pointer_key(&pointer, "normal");
+      return error_set(reader->error, STATUS_INVALID, pointer.text,
+                       "the normal of a plane needs a length; for example [0, 0, 1] for a floor");
+    }
+  }
+  return STATUS_OK;
+}
+
 static void read_mesh(const json_t *mesh, struct mesh_spec *spec) {
   spec->gap_wall = reader_count(mesh, "gap_wall", 0);
   spec->cavity = reader_count(mesh, "cavity", 0);
@@ -132,7 +157,11 @@ static enum accuracy read_accuracy(const char *word) {
 
 bool reader_symmetric(const struct job_spec *spec) {
   const struct pneunet_spec *p = &spec->pneunet;
-  return p->taper_left == p->taper_right && spec->load.gravity[1] == 0.0;
+  bool symmetric = p->taper_left == p->taper_right && spec->load.gravity[1] == 0.0;
+  for (int k = 0; k < spec->plane_count; k++) {
+    symmetric = symmetric && spec->plane[k].normal[1] == 0.0;
+  }
+  return symmetric;
 }
 
 /* The document has passed the schema and its defaults are filled in. */
@@ -155,11 +184,14 @@ static enum status read_response(const struct reader *reader, const json_t *docu
                         &spec->metrics.cai_to);
   }
   if (status == STATUS_OK) {
+    status = read_planes(reader, json_object_get(document, "planes"), spec);
+  }
+  if (status == STATUS_OK) {
     status = reader_material(reader, json_object_get(document, "material"), &spec->material);
   }
   if (status == STATUS_OK) {
-    status = reader_pneunet(reader, json_object_get(document, "actuator"), &spec->given,
-                            &spec->pneunet);
+    status =
+        reader_pneunet(reader, json_object_get(document, "actuator"), &spec->given, &spec->pneunet);
   }
   if (status == STATUS_OK) {
     status = reader_sensitivity(reader, json_object_get(document, "sensitivity"), spec);

@@ -110,6 +110,14 @@ struct sensitivity_spec {
   struct job_parameter parameter[PARAMETERS_MAX];
 };
 
+enum { PLANES_MAX = 7 };
+
+/* Rigid plane that the outer surface cannot pass; the body is on the side of the normal. */
+struct plane_spec {
+  double point[3];  /* m */
+  double normal[3]; /* of any length */
+};
+
 struct metric_spec {
   double fit_from, fit_to; /* Pa: range of the straight-line fit (sensitivity, R2) */
   double cai_from, cai_to; /* Pa: range of the curvature adaptability index */
@@ -126,12 +134,14 @@ struct job_spec {
   struct metric_spec metrics;
   struct sensitivity_spec sensitivity;
   bool contact;
+  struct plane_spec plane[PLANES_MAX];
+  int plane_count;
   bool half_model; /* symmetric about y = 0 in geometry and load */
   enum accuracy accuracy;
   bool error_estimate; /* solve the end of the load path on a finer mesh, too */
-  double timeout_s; /* 0: none */
-  char hash[65];    /* SHA-256 of the canonical job text: sorted keys, defaults filled in, no
-                     * name, labels and comments; 64 hexadecimal digits */
+  double timeout_s;    /* 0: none */
+  char hash[65];       /* SHA-256 of the canonical job text: sorted keys, defaults filled in, no
+                        * name, labels and comments; 64 hexadecimal digits */
 };
 
 /* What every reading of a job needs: unit database and schema. One reader may be used by several

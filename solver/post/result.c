@@ -17,6 +17,7 @@ struct result *result_create(const struct job_spec *spec, struct fe_model *model
   r->sample = calloc((size_t)spec->load.steps + 1, sizeof *r->sample);
   r->midlines = json_array();
   r->artifacts = json_array();
+  r->arc = json_array();
   if (!r->sample || !r->midlines || !r->artifacts || state_create(model, &r->first) != STATUS_OK ||
       state_create(model, &r->last) != STATUS_OK) {
     result_destroy(r);
@@ -32,6 +33,7 @@ void result_destroy(struct result *r) {
   free(r->sample);
   json_decref(r->midlines);
   json_decref(r->artifacts);
+  json_decref(r->arc);
   export_destroy(r->export);
   state_release(&r->first);
   state_release(&r->last);
@@ -81,12 +83,34 @@ static json_t *midline(const struct result *r, const double *u, double pressure)
   return json_pack("{s:f, s:o}", "pressure_kPa", 1e-3 * pressure, "points_mm", points);
 }
 
+/* A state where a held load found no equilibrium: one line of the table of the arc. */
+static enum status add_arc_point(struct result *r, const struct path_point *point) {
+  struct sample s = {.pressure = point->pressure};
+  enum status status = sample_measure(r->model, r->retraction, point->state, &s);
+  r->arc_stretch = fmax(r->arc_stretch, s.max_stretch);
+  if (status == STATUS_OK &&
+      json_array_append_new(r->arc,
+                            json_pack("{s:f, s:f, s:f, s:f}", "pressure_kPa", 1e-3 * s.pressure,
+                                      "bending_angle_deg", s.shape.bending_angle / degree,
+                                      "cavity_volume_mm3", 1e9 * s.cavity_volume, "max_stretch",
+                                      s.max_stretch)) != 0) {
+    status = STATUS_NO_MEMORY;
+  }
+  return status;
+}
+
 enum status result_add(struct result *r, const struct path_point *point) {
   struct fe_model *m = r->model;
   const struct fe_state *state = point->state;
+  if (point->arc) {
+    return add_arc_point(r, point);
+  }
   model_update_gaps(m, state);
   struct contact_summary contact = contact_summarise(&m->contact);
   follow_contact(r, point, &contact);
+  if (!point->recorded) {
+    r->arc_stretch = fmax(r->arc_stretch, shape_stretch(m, state->u, NULL));
+  }
   if (!point->recorded || r->sample_count > (size_t)r->spec->load.steps) {
     return STATUS_OK;
   }
@@ -96,7 +120,7 @@ enum status result_add(struct result *r, const struct path_point *point) {
   if (status != STATUS_OK) {
     return status;
   }
-  r->penetration = fmax(r->penetration, -contact.min_gap);
+  r->penetration = fmax(r->penetration, s->penetration);
   if (r->sample_count == 0) {
     state_copy(m, &r->first, state);
   }
@@ -114,6 +138,21 @@ static void set_real(json_t *object, const char *key, double value) {
   }
 }
 
+/* Forces and pressures of contact; for a body that can touch nothing there are none. */
+static void set_contact(json_t *o, const struct sample *s) {
+  if (!s->touching) {
+    return;
+  }
+  set_real(o, "contact_force_N", s->contact_force);
+  set_real(o, "contact_area_mm2", 1e6 * s->contact_area);
+  set_real(o, "max_contact_pressure_kPa", 1e-3 * s->contact_traction);
+  for (int k = 0; k < s->plane_count; k++) {
+    char key[32];
+    snprintf(key, sizeof key, "plane_%d_force_N", k + 1);
+    set_real(o, key, s->plane_force[k]);
+  }
+}
+
 static json_t *sample_object(const struct sample *s) {
   json_t *o = json_object();
   set_real(o, "pressure_kPa", 1e-3 * s->pressure);
@@ -126,6 +165,7 @@ static json_t *sample_object(const struct sample *s) {
   set_real(o, "cavity_volume_mm3", 1e9 * s->cavity_volume);
   set_real(o, "min_gap_mm", 1e3 * s->min_gap);
   set_real(o, "max_stretch", s->max_stretch);
+  set_contact(o, s);
   json_object_set_new(o, "newton_iterations", json_integer(s->iterations));
   return o;
 }
@@ -181,6 +221,7 @@ static json_t *metrics_object(const struct result *r) {
   }
   set_real(o, "cavity_volume_mm3", 1e9 * s->cavity_volume);
   set_real(o, "max_stretch", s->max_stretch);
+  set_contact(o, s);
   set_real(o, "min_gap_mm", 1e3 * s->min_gap);
   set_real(o, "max_penetration_mm", 1e3 * r->penetration);
   result_set_errors(r, o);
@@ -217,15 +258,34 @@ void result_note_start(struct result *r, bool warm) {
   r->warm = warm;
 }
 
+/* Highest pressure of the arc, kPa. */
+static double arc_top(const struct result *r) {
+  double top = 0;
+  size_t index;
+  json_t *point;
+  json_array_foreach(r->arc, index, point) {
+    top = fmax(top, json_number_value(json_object_get(point, "pressure_kPa")));
+  }
+  return top;
+}
+
 json_t *result_document(struct result *r, enum status status, const struct error *error,
                         double wall_s, double cpu_s) {
   bool good = status == STATUS_OK;
-  return json_pack("{s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:O, s:o, s:o, s:O, s:o, s:{s:s, s:s}}",
-                   "status", good ? "succeeded" : "diverged", "reason",
-                   good ? "" : status_word(status), "message", good ? "" : error->message, "kind",
-                   "response", "name", r->spec->name, "metrics", metrics_object(r), "samples",
-                   result_samples(r), "midlines", r->midlines, "fit", fit_object(r), "warnings",
-                   result_warnings(r), "artifacts", r->artifacts, "statistics",
-                   statistics_object(r, wall_s, cpu_s), "provenance", "version", PNEULAB_VERSION,
-                   "spec_hash", r->spec->hash);
+  json_t *metrics = metrics_object(r);
+  if (status == STATUS_LIMIT_POINT) {
+    set_real(metrics, "limit_point_kPa", arc_top(r));
+  }
+  json_t *document =
+      json_pack("{s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:O, s:o, s:o, s:O, s:o, s:{s:s, s:s}}",
+                "status", good ? "succeeded" : "diverged", "reason",
+                good ? "" : status_word(status), "message", good ? "" : error->message, "kind",
+                "response", "name", r->spec->name, "metrics", metrics, "samples", result_samples(r),
+                "midlines", r->midlines, "fit", fit_object(r), "warnings", result_warnings(r),
+                "artifacts", r->artifacts, "statistics", statistics_object(r, wall_s, cpu_s),
+                "provenance", "version", PNEULAB_VERSION, "spec_hash", r->spec->hash);
+  if (document && json_array_size(r->arc) > 0) {
+    json_object_set(document, "arc", r->arc);
+  }
+  return document;
 }

@@ -38,6 +38,11 @@ enum status result_write_files(struct result *result, const char *directory, str
 void result_compare(struct result *result, const struct sample *finer, const struct error *error,
                     double cpu_s);
 
+/* The cause of a path's end, looked at with its last converged states: a path that broke down
+ * where the material law had lost its stability ends with UNSTABLE, other causes stay. Changes
+ * `error` along. */
+enum status result_cause(const struct result *result, enum status status, struct error *error);
+
 /* The document, a new reference; `status` and `error` tell how the path ended. wall_s and cpu_s
  * are those of the whole run. NULL when memory runs out. */
 json_t *result_document(struct result *result, enum status status, const struct error *error,

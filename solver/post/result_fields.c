@@ -6,13 +6,29 @@
 #include "solver/post/result_internal.h"
 #include "solver/post/skin.h"
 
+enum status result_cause(const struct result *r, enum status status, struct error *error) {
+  double reached = r->arc_stretch, unstable;
+  for (size_t i = 0; i < r->sample_count; i++) {
+    reached = fmax(reached, r->sample[i].max_stretch);
+  }
+  bool broke = status == STATUS_STEP_MINIMUM || status == STATUS_INVERTED;
+  if (!broke || material_stable_to(&r->spec->material, fmax(reached, 1), &unstable)) {
+    return status;
+  }
+  char message[sizeof error->message];
+  snprintf(message, sizeof message, "%s", error->message);
+  return error_set(error, STATUS_UNSTABLE, "/material",
+                   "%.300s; the material law is not stable beyond a stretch of %.3f, and %.3f was "
+                   "reached",
+                   message, unstable, reached);
+}
+
 json_t *result_warnings(const struct result *r) {
   const struct material_spec *m = &r->spec->material;
   json_t *list = json_array();
-  double reached = 1, bent = 0, unstable, wall = r->model->mesh->wall_thickness;
+  double reached = 1, unstable, wall = r->model->mesh->wall_thickness;
   for (size_t i = 0; i < r->sample_count; i++) {
     reached = fmax(reached, r->sample[i].max_stretch);
-    bent = fmax(bent, fabs(r->sample[i].shape.bending_angle));
   }
   if (!material_stable_to(m, reached, &unstable)) {
     json_array_append_new(
@@ -27,20 +43,15 @@ json_t *result_warnings(const struct result *r) {
   }
   if (r->penetration > 0.02 * wall) {
     json_array_append_new(
-        list, json_sprintf(r->spec->contact
-                               ? "chambers overlap by %.3f mm, more than 2 %% of the thinnest wall"
-                               : "contact is off and chambers overlap by %.3f mm",
-                           1e3 * r->penetration));
+        list,
+        json_sprintf(r->spec->contact
+                         ? "the surfaces overlap by %.3f mm, more than 2 %% of the thinnest wall"
+                         : "contact is off and chambers overlap by %.3f mm",
+                     1e3 * r->penetration));
   }
   if (r->estimate.status != STATUS_OK) {
     json_array_append_new(list, json_sprintf("the errors of the metrics could not be estimated: %s",
                                              r->estimate.message));
-  }
-  if (bent > 1.5 * M_PI) {
-    json_array_append_new(
-        list, json_sprintf("the body bends by %.0f degrees: beyond about 270 it may meet itself, "
-                           "which only neighbouring chambers are kept from",
-                           bent * 180 / M_PI));
   }
   return list;
 }

@@ -18,8 +18,10 @@ struct result {
   size_t sample_count;
   json_t *midlines;
   json_t *artifacts;
+  json_t *arc;               /* states that arc length found, in the order of the path */
   struct open_state open[2]; /* the last two states without contact, newest first */
   int open_count;
+  double arc_stretch;          /* largest of the states that are not recorded */
   double onset;                /* Pa, negative until contact */
   double penetration;          /* largest over recorded states, m */
   struct fe_state first, last; /* recorded states */
@@ -28,8 +30,8 @@ struct result {
   struct error failure;        /* of writing files on the way */
   bool compared;               /* `finer` holds the last recorded state on a finer mesh */
   struct sample finer;
-  double estimate_s;           /* CPU time of that, s */
-  struct error estimate;       /* why it failed */
+  double estimate_s;     /* CPU time of that, s */
+  struct error estimate; /* why it failed */
 };
 
 /* The samples of the document, a new reference. */

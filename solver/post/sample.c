@@ -1,10 +1,31 @@
 #include "solver/post/sample.h"
 
+#include "solver/fe/vec3.h"
+
+static void measure_contact(const struct fe_model *model, struct sample *sample) {
+  struct contact_summary c = contact_summarise(&model->contact);
+  double whole = model->mesh->half ? 2 : 1;
+  sample->min_gap = c.min_gap;
+  sample->touching = model->use_contact || model->contact.plane_count > 0;
+  sample->contact_force = whole * c.force;
+  sample->contact_area = whole * c.area;
+  sample->contact_traction = c.max_traction;
+  sample->penetration = c.penetration;
+  sample->plane_count = 0;
+  for (int k = 0; k < model->contact.plane_count; k++) {
+    const struct contact_plane *plane = &model->contact.plane[k];
+    if (!plane->symmetry) {
+      sample->plane_force[sample->plane_count++] =
+          whole * vec3_dot(c.plane_force[k], plane->normal);
+    }
+  }
+}
+
 enum status sample_measure(struct fe_model *model, const struct retraction *retraction,
                            const struct fe_state *state, struct sample *sample) {
   const struct mesh *mesh = model->mesh;
   model_update_gaps(model, state);
-  sample->min_gap = contact_summarise(&model->contact).min_gap;
+  measure_contact(model, sample);
   shape_measure(mesh, retraction, state->u, &sample->shape);
   double rest = mesh->x[3 * mesh->centreline[mesh->section_count - 1] + 2];
   sample->tip_deflection = rest - sample->shape.tip[2];

@@ -11,6 +11,13 @@ struct sample {
   double cavity_volume;  /* m3, whole body */
   double min_gap;        /* m, INFINITY without facing faces */
   double max_stretch;
+  bool touching;        /* the body can touch itself or a plane */
+  double contact_force; /* sum of the normal forces where the body touches itself, N, whole body */
+  double contact_area;  /* undeformed area there, m2, whole body */
+  double contact_traction; /* largest, Pa, per undeformed area */
+  double penetration;      /* largest, m */
+  int plane_count;
+  double plane_force[PLANES_MAX]; /* push of every plane of the job on the whole body, N */
   int iterations;
 };
 
