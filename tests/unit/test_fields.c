@@ -321,7 +321,6 @@ static json_t *exported(int steps, int recorded, const char *directory) {
   ck_assert_int_eq(suite_read_changed(NULL, NULL, &spec, &error), STATUS_OK);
   spec.load.steps = steps;
   build((int[3]){1, 1, 1}, solid_cell, cube_map, &mesh);
-  mesh.centreline = calloc((size_t)mesh.section_count, sizeof *mesh.centreline);
   struct fe_model *m = create_model(&mesh, &spec.material);
   ck_assert_int_eq(state_create(m, &state), STATUS_OK);
   ck_assert_int_eq(export_create(&spec, m, directory, &export, &error), STATUS_OK);
