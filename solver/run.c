@@ -6,6 +6,7 @@
 #include "solver/post/deck.h"
 #include "solver/post/result.h"
 #include "solver/post/result_sensitivity.h"
+#include "solver/verify/verify.h"
 
 /* Everything one run owns. */
 struct run {
@@ -124,11 +125,25 @@ static enum status solve(struct run *run, json_t **document, enum status *ending
   return status;
 }
 
+static enum status run_verify(const struct job_spec *spec, const struct run_options *options,
+                              json_t **document, enum status *ending, struct error *error) {
+  if (options->deck_path) {
+    return error_set(error, STATUS_INVALID, "/kind",
+                     "a verify job has no deck: it solves bodies "
+                     "of its own");
+  }
+  struct verify_options verify = {options->events, options->cancelled};
+  return verify_job(spec, &verify, document, ending, error);
+}
+
 enum status run_job(const struct job_spec *spec, const struct run_options *options,
                     json_t **document, enum status *ending, struct error *error) {
   struct run run = {.spec = spec, .options = options};
   *document = NULL;
   *ending = STATUS_OK;
+  if (spec->kind == JOB_VERIFY) {
+    return run_verify(spec, options, document, ending, error);
+  }
   enum status status = pneunet_mesh(spec, &run.solve.mesh, error);
   if (status != STATUS_OK) {
     return status;

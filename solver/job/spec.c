@@ -200,6 +200,27 @@ static enum status read_response(const struct reader *reader, const json_t *docu
   return status;
 }
 
+/* ---- a verify job ------------------------------------------------------------------------- */
+
+static enum status read_verify(const struct reader *reader, const json_t *document,
+                               struct job_spec *spec) {
+  struct verify_spec *verify = &spec->verify;
+  spec->kind = JOB_VERIFY;
+  reader_copy(spec->name, sizeof spec->name, json_string_value(json_object_get(document, "name")));
+  spec->timeout_s = reader_member(reader, document, "timeout", "s", 0.0);
+  reader_copy(verify->name, sizeof verify->name,
+              json_string_value(json_object_get(document, "case")));
+  verify->refinement = reader_count(document, "refinement", 1);
+  return STATUS_OK;
+}
+
+static enum status read_kind(const struct reader *reader, const json_t *document,
+                             struct job_spec *spec) {
+  const char *kind = json_string_value(json_object_get(document, "kind"));
+  return strcmp(kind, "verify") == 0 ? read_verify(reader, document, spec)
+                                     : read_response(reader, document, spec);
+}
+
 /* ---- the whole document ----------------------------------------------------------------- */
 
 enum status job_reader_read(const struct job_reader *reader, const char *text, size_t size,
@@ -218,7 +239,7 @@ enum status job_reader_read(const struct job_reader *reader, const char *text, s
     status = schema_fill(reader->schema, document, error);
   }
   if (status == STATUS_OK) {
-    status = read_response(&inner, document, spec);
+    status = read_kind(&inner, document, spec);
   }
   if (status == STATUS_OK) {
     status = job_hash(document, spec->hash, error);

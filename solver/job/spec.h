@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include "solver/base/error.h"
 
-enum job_kind { JOB_RESPONSE };
+enum job_kind { JOB_RESPONSE, JOB_VERIFY };
 
 /* ---- material --------------------------------------------------------------------------- */
 
@@ -123,6 +123,13 @@ struct metric_spec {
   double cai_from, cai_to; /* Pa: range of the curvature adaptability index */
 };
 
+/* A case of solver/verify/cases.c. */
+struct verify_spec {
+  char name[64];
+  int refinement; /* number of meshes, each finer than the one before */
+};
+
+/* Only the members of its kind are filled: of a verify job name, verify, timeout and hash. */
 struct job_spec {
   enum job_kind kind;
   char name[200];
@@ -133,6 +140,7 @@ struct job_spec {
   struct mesh_spec mesh;
   struct metric_spec metrics;
   struct sensitivity_spec sensitivity;
+  struct verify_spec verify;
   bool contact;
   struct plane_spec plane[PLANES_MAX];
   int plane_count;

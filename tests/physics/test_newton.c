@@ -5,8 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "solver/fe/retraction.h"
-#include "tests/physics/body.h"
-#include "tests/physics/newton.h"
+#include "solver/verify/report.h"
 #include "tests/physics/pneunet_case.h"
 #include "tests/physics/report.h"
 #include "tests/unit/suite.h"
@@ -187,7 +186,8 @@ START_TEST(newton_is_quadratic) {
   case_open(&c, &spec);
   struct fe_load load = {10e3, 10e3, 0};
   if (_i == 0) {
-    ck_assert_int_eq(newton_solve(c.model, &load, &c.state, 1e-14, &log), STATUS_OK);
+    struct newton_control control = {.tolerance = 1e-14, .log = &log};
+    ck_assert_int_eq(newton_solve(c.model, &load, &c.state, &control), STATUS_OK);
   } else {
     newton_retracted(&c, &load, &log);
   }

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Includes only point downwards: base < job < mesh < fe < post < run within the solver; the
+# Includes only point downwards: base < job < mesh < fe < post, verify < run within the solver; the
 # server uses of the solver only base and job; the solver never sees the server.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
@@ -9,7 +9,7 @@ rank() {
   solver/job/*) echo 2 ;;
   solver/mesh/*) echo 3 ;;
   solver/fe/* | solver/hlpv/*) echo 4 ;;
-  solver/post/*) echo 5 ;;
+  solver/post/* | solver/verify/*) echo 5 ;;
   solver/run.[ch] | solver/main.c) echo 6 ;;
   server/*) echo 7 ;;
   *) echo 0 ;;

@@ -5,7 +5,7 @@
 
 #include "solver/fe/retraction.h"
 #include "solver/fe/vec3.h"
-#include "tests/physics/body.h"
+#include "solver/verify/body.h"
 #include "tests/physics/pneunet_case.h"
 #include "tests/unit/suite.h"
 #include "solver/mesh/pneunet.h"

@@ -1,6 +1,6 @@
-/* Bodies of the physics tests: mapped blocks of hexahedra, joined where their nodes coincide. */
-#ifndef PNEULAB_TESTS_PHYSICS_BODY_H
-#define PNEULAB_TESTS_PHYSICS_BODY_H
+/* Simple bodies: mapped blocks of hexahedra, joined where their nodes coincide. */
+#ifndef PNEULAB_VERIFY_BODY_H
+#define PNEULAB_VERIFY_BODY_H
 
 #include "solver/fe/model.h"
 
@@ -17,8 +17,8 @@ struct body {
 enum { HOLD_X = 1, HOLD_Y = 2, HOLD_Z = 4, HOLD_ALL = 7 };
 
 /* Builds the mesh, without sections; boundary faces are those of the blocks, also where two
- * blocks meet. Released with mesh_release. */
-void body_build(const struct body *body, struct mesh *mesh);
+ * blocks meet. Released with mesh_release, also after a failure: STATUS_NO_MEMORY. */
+enum status body_build(const struct body *body, struct mesh *mesh);
 
 /* Holds the components of the nodes whose coordinate `axis` is `at`; axis -1 means all nodes. */
 void body_hold(struct mesh *mesh, int axis, double at, int components);
@@ -33,9 +33,6 @@ void body_add_traction(struct fe_model *model, int axis, double at, const double
 /* The same on those of the faces whose nodes have no other coordinate above `limit`. */
 void body_add_traction_within(struct fe_model *model, int axis, double at, double limit,
                               const double traction[3]);
-
-/* Model of a body without contact; fails the test when it cannot be made. */
-struct fe_model *body_model(const struct mesh *mesh, const struct material_spec *material);
 
 /* Node nearest to x. */
 int body_node(const struct mesh *mesh, double x, double y, double z);

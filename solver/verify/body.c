@@ -1,18 +1,10 @@
-#include "tests/physics/body.h"
+#include "solver/verify/body.h"
 
-#include <cblas.h>
-#include <check.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include "solver/fe/vec3.h"
 #include "solver/mesh/grid.h"
-
-static void *allocate(size_t count, size_t size) {
-  void *memory = calloc(count, size);
-  ck_assert_ptr_nonnull(memory);
-  return memory;
-}
 
 /* Number of the node at x, among the nodes before `limit` or a new one. */
 static int join_node(struct mesh *mesh, const double x[3], int limit) {
@@ -62,22 +54,24 @@ static void add_block(const struct body *body, int block, int *number, struct me
   }
 }
 
-void body_build(const struct body *body, struct mesh *mesh) {
+enum status body_build(const struct body *body, struct mesh *mesh) {
   size_t elements = 1, nodes = 1, blocks = (size_t)body->blocks;
   for (int d = 0; d < 3; d++) {
     elements *= (size_t)body->cells[d];
     nodes *= 2 * (size_t)body->cells[d] + 1;
   }
   *mesh = (struct mesh){.wall_thickness = 1};
-  mesh->x = allocate(3 * blocks * nodes, sizeof *mesh->x);
-  mesh->element_nodes = allocate(blocks * elements * HEX27_NODES, sizeof *mesh->element_nodes);
-  mesh->fixed = allocate(3 * blocks * nodes, 1);
-  mesh->faces = allocate(6 * blocks * elements, sizeof *mesh->faces);
-  int *number = allocate(nodes, sizeof *number);
-  for (int block = 0; block < body->blocks; block++) {
+  mesh->x = calloc(3 * blocks * nodes, sizeof *mesh->x);
+  mesh->element_nodes = calloc(blocks * elements * HEX27_NODES, sizeof *mesh->element_nodes);
+  mesh->fixed = calloc(3 * blocks * nodes, 1);
+  mesh->faces = calloc(6 * blocks * elements, sizeof *mesh->faces);
+  int *number = calloc(nodes, sizeof *number);
+  bool good = mesh->x && mesh->element_nodes && mesh->fixed && mesh->faces && number;
+  for (int block = 0; good && block < body->blocks; block++) {
     add_block(body, block, number, mesh);
   }
   free(number);
+  return good ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
 void body_hold(struct mesh *mesh, int axis, double at, int components) {
@@ -147,15 +141,6 @@ void body_add_traction_within(struct fe_model *model, int axis, double at, doubl
       }
     }
   }
-}
-
-struct fe_model *body_model(const struct mesh *mesh, const struct material_spec *material) {
-  openblas_set_num_threads(1); /* as the solver does */
-  struct fe_model *model;
-  struct error error = {0};
-  enum status status = model_create(mesh, material, false, &model, &error);
-  ck_assert_msg(status == STATUS_OK, "%s: %s", status_word(status), error.message);
-  return model;
 }
 
 int body_node(const struct mesh *mesh, double x, double y, double z) {
