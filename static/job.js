@@ -13,6 +13,8 @@ const CAPTIONS = {
   midline: 'Centreline at the recorded pressures',
   tip: 'Path of the tip',
   surface: 'Deformed body, coloured by the largest stretch',
+  convergence: 'Error against element size',
+  curve: 'Computed values on the curve of the reference',
 };
 
 const ACTIONS = [

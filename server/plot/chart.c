@@ -144,6 +144,10 @@ static void equalise(struct frame *frame) {
   frame->y_max += spare_y;
 }
 
+static struct ticks axis_ticks(const struct chart *chart, double min, double max, int target) {
+  return chart->log_axes ? ticks_make_log(min, max, target) : ticks_make(min, max, target);
+}
+
 /* Finds the inside of the axes below `top`, and with it the final ranges. */
 static void lay_out(const struct chart *chart, struct canvas *canvas, double top,
                     const struct frame *data, struct frame *frame) {
@@ -165,11 +169,12 @@ static void lay_out(const struct chart *chart, struct canvas *canvas, double top
     if (chart->equal) {
       equalise(frame);
     } else {
-      ticks_widen(&frame->x_min, &frame->x_max, tick_target(canvas, area.width, 90));
-      ticks_widen(&frame->y_min, &frame->y_max, tick_target(canvas, area.height, 60));
+      void (*widen)(double *, double *, int) = chart->log_axes ? ticks_widen_log : ticks_widen;
+      widen(&frame->x_min, &frame->x_max, tick_target(canvas, area.width, 90));
+      widen(&frame->y_min, &frame->y_max, tick_target(canvas, area.height, 60));
     }
     struct ticks ticks =
-        ticks_make(frame->y_min, frame->y_max, tick_target(canvas, area.height, 60));
+        axis_ticks(chart, frame->y_min, frame->y_max, tick_target(canvas, area.height, 60));
     frame->area.x = round((MARGIN + 32) * u + widest_tick(canvas, &ticks));
     frame->area.width = right - frame->area.x;
   }
@@ -180,8 +185,9 @@ static void draw_axes(const struct chart *chart, struct canvas *canvas, const st
   double u = canvas->unit;
   const struct box *a = &frame->area;
   double bottom = a->y + a->height, right = a->x + a->width;
-  struct ticks xs = ticks_make(frame->x_min, frame->x_max, tick_target(canvas, a->width, 90));
-  struct ticks ys = ticks_make(frame->y_min, frame->y_max, tick_target(canvas, a->height, 60));
+  int x_target = tick_target(canvas, a->width, 90), y_target = tick_target(canvas, a->height, 60);
+  struct ticks xs = axis_ticks(chart, frame->x_min, frame->x_max, x_target);
+  struct ticks ys = axis_ticks(chart, frame->y_min, frame->y_max, y_target);
   struct text_style tick = chart_style_tick(), label = chart_style_label();
   if (empty) {
     xs.count = ys.count = 0; /* numbers would claim a range that nothing was measured in */

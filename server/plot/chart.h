@@ -57,6 +57,7 @@ struct chart {
   const char *x_label, *y_label;
   bool equal;     /* one unit is as long in x as in y */
   bool from_zero; /* both axes show zero */
+  bool log_axes;  /* x and y of all points are decimal logarithms of what the axes count */
   const struct chart_series *series;
   size_t series_count;
   const struct chart_label *labels;

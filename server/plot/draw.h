@@ -20,6 +20,12 @@ enum status draw_tip(struct canvas *canvas, const struct plot_input *inputs, siz
 /* The deformed body from surface.json, coloured by the largest stretch. */
 enum status draw_surface(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                          struct error *error);
+/* Error against element size of a verify job, both logarithmic, with the slope that is due. */
+enum status draw_convergence(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                             struct error *error);
+/* The computed points of a verify job on the curve of their references. */
+enum status draw_curve(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                       struct error *error);
 /* Bending angle against pressure of several jobs. */
 enum status draw_overlay(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                          struct error *error);

@@ -16,13 +16,18 @@ struct entry {
 
 static const struct entry entries[] = {
     {"angle", draw_angle},     {"midline", draw_midline}, {"tip", draw_tip},
-    {"surface", draw_surface}, {"overlay", draw_overlay},
+    {"surface", draw_surface}, {"overlay", draw_overlay}, {"convergence", draw_convergence},
+    {"curve", draw_curve},
 };
 
 const char *const *plot_names(const char *kind) {
   static const char *const response[] = {"angle", "midline", "tip", "surface", NULL};
+  static const char *const verify[] = {"convergence", "curve", NULL};
   static const char *const none[] = {NULL};
-  return kind && strcmp(kind, "response") == 0 ? response : none;
+  return !kind                           ? none
+         : strcmp(kind, "response") == 0 ? response
+         : strcmp(kind, "verify") == 0   ? verify
+                                         : none;
 }
 
 static draw_function *find(const char *plot) {
@@ -56,8 +61,11 @@ enum status plot_render(const char *plot, const struct plot_input *inputs, size_
                         int height, unsigned char **png, size_t *size, struct error *error) {
   draw_function *draw = find(plot);
   if (!draw) {
-    return error_set(error, STATUS_NOT_FOUND, NULL,
-                     "there is no plot \"%.40s\"; a job has angle, midline, tip and surface", plot);
+    return error_set(
+        error, STATUS_NOT_FOUND, NULL,
+        "there is no plot \"%.40s\"; a response has angle, midline, tip and surface, a "
+        "verification convergence and curve",
+        plot);
   }
   if (count == 0 || count > DRAW_OVERLAY_LIMIT) {
     return error_set(error, STATUS_INVALID, NULL,

@@ -1,6 +1,7 @@
 #include "server/plot/ticks.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -37,8 +38,74 @@ void ticks_widen(double *min, double *max, int target) {
   *max = ceil(*max / step - 1e-6) * step;
 }
 
+/* ---- logarithmic scales ---- */
+
+/* Position of the k-th of ..., 1, 2, 5, 10, 20, ...; k = 0 is 1. */
+static double position_125(double k) {
+  static const double digits[3] = {0, 0.301029995663981195, 0.698970004336018805};
+  double decade = floor(k / 3);
+  return decade + digits[(int)(k - 3 * decade)];
+}
+
+/* Whether powers of ten alone are enough. */
+static bool wide(double min, double max, int target) {
+  return 3 * (max - min) > 1.5 * target;
+}
+
+void ticks_widen_log(double *min, double *max, int target) {
+  if (!isfinite(*min) || !isfinite(*max)) {
+    *min = -1;
+    *max = 0;
+  }
+  bool decades = wide(*min, *max, target);
+  double low = 3 * floor(*min), high = 3 * ceil(*max), step = decades ? 3 : 1;
+  while (position_125(low + step) <= *min + 1e-9) {
+    low += step;
+  }
+  while (position_125(high - step) >= *max - 1e-9) {
+    high -= step;
+  }
+  if (high <= low) {
+    low -= step;
+    high = low + 2 * step;
+  }
+  *min = position_125(low);
+  *max = position_125(high);
+}
+
+struct ticks ticks_make_log(double min, double max, int target) {
+  double slack = 1e-6;
+  if (wide(min, max, target)) {
+    struct ticks ticks = {.scale = TICKS_DECADES, .step = ceil((max - min) / target - slack)};
+    ticks.first = ceil(min / ticks.step - slack);
+    ticks.count = (int)(floor(max / ticks.step + slack) - ticks.first) + 1;
+    return ticks;
+  }
+  struct ticks ticks = {.scale = TICKS_125, .step = 1, .first = 3 * floor(min)};
+  while (position_125(ticks.first) < min - slack) {
+    ticks.first += 1;
+  }
+  while (position_125(ticks.first + ticks.count) <= max + slack) {
+    ticks.count++;
+  }
+  return ticks;
+}
+
 double ticks_value(const struct ticks *ticks, int i) {
-  return (ticks->first + (double)i) * ticks->step;
+  double steps = ticks->first + (double)i;
+  return ticks->scale == TICKS_125 ? position_125(steps) : steps * ticks->step;
+}
+
+/* "10" with the exponent raised, in UTF-8. */
+static void power_label(int exponent, char text[TICKS_TEXT]) {
+  static const char *const raised[10] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
+                                         "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
+  char digits[12];
+  snprintf(digits, sizeof digits, "%d", exponent < 0 ? -exponent : exponent);
+  int used = snprintf(text, TICKS_TEXT, "10%s", exponent < 0 ? "\u207b" : "");
+  for (const char *c = digits; *c; c++) {
+    used += snprintf(text + used, (size_t)(TICKS_TEXT - used), "%s", raised[*c - '0']);
+  }
 }
 
 /* Replaces the hyphen in front of a number (and of an exponent) by U+2212. */
@@ -58,7 +125,19 @@ static void true_minus(const char *plain, char text[TICKS_TEXT]) {
 void ticks_label(const struct ticks *ticks, int i, char text[TICKS_TEXT]) {
   double value = ticks_value(ticks, i);
   char plain[TICKS_TEXT];
-  if (fabs(value) >= 1e6 || ticks->decimals > 6) {
+  if (ticks->scale != TICKS_LINEAR && (fabs(value) > 3.5 || ticks->scale == TICKS_DECADES)) {
+    double exponent = floor(value + 1e-6), digit = round(pow(10, value - exponent));
+    power_label((int)exponent, text);
+    if (digit > 1) {
+      char power[TICKS_TEXT];
+      memcpy(power, text, sizeof power);
+      snprintf(text, TICKS_TEXT, "%d\u00b7%.22s", (int)digit, power);
+    }
+    return;
+  }
+  if (ticks->scale == TICKS_125) {
+    snprintf(plain, sizeof plain, "%.6g", pow(10, value));
+  } else if (fabs(value) >= 1e6 || ticks->decimals > 6) {
     snprintf(plain, sizeof plain, "%.4g", value);
   } else {
     snprintf(plain, sizeof plain, "%.*f", ticks->decimals, value == 0.0 ? 0.0 : value);

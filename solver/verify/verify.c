@@ -83,9 +83,17 @@ static json_t *case_object(const struct verify_case *c) {
                         "title", c->title, "quantity", c->quantity, "unit", c->unit, "size",
                         c->size, "order", c->order, "bound_because", c->bound_because, "source",
                         "author", c->author, "year", c->year, "work", c->source);
+  if (c->norm) {
+    json_object_set_new(o, "norm", json_string(c->norm));
+  }
   if (c->other) {
-    json_object_set_new(o, "norms", json_pack("[s, s]", c->norm, c->other));
+    json_object_set_new(o, "other_norm", json_string(c->other));
     json_object_set_new(o, "other_order", json_real(c->other_order));
+  }
+  if (c->point) {
+    json_object_set_new(o, "point", json_string(c->point));
+    json_object_set_new(o, "x_label", json_string(c->x_label));
+    json_object_set_new(o, "y_label", json_string(c->y_label));
   }
   return o;
 }

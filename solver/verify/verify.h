@@ -16,6 +16,8 @@ struct verify_case {
   int year;
   const char *size;          /* meaning of the rows' size */
   const char *point;         /* key of the points' x, NULL without points */
+  const char *x_label;       /* the points' x in words, with its unit */
+  const char *y_label;       /* and what is computed and referred to there */
   double order;              /* expected slope of the error over the size, 0: none */
   const char *norm, *other;  /* names of the rows' two errors, NULL with one error only */
   double other_order;        /* expected slope of the second one */
