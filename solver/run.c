@@ -116,10 +116,11 @@ static enum status solve(struct run *run, json_t **document, enum status *ending
   if (status == STATUS_OK) {
     *document =
         result_document(run->result, *ending, &end, clock_wall_s() - wall, clock_cpu_s() - cpu);
-    if (!*document) {
+    if (!*document ||
+        (run->sensitivity && result_sensitivity_store(run->sensitivity, *document) != STATUS_OK)) {
+      json_decref(*document);
+      *document = NULL;
       status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the result document");
-    } else if (run->sensitivity) {
-      json_object_set_new(*document, "sensitivity", result_sensitivity_block(run->sensitivity));
     }
   }
   return status;

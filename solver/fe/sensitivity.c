@@ -14,9 +14,12 @@ static const double step_tolerance = 1e-9;
 static const double traction_tolerance = 1e-6;
 static const double traction_floor = 1e-8;
 
-/* Tractions so much further from their multipliers are unsettled: some of the points would be
- * about to part, and the tangent not that of the settled contact. */
+/* Tractions so many times further from their multipliers are unsettled: some points may be about
+ * to part, and the tangent not that of the settled contact. Then the body's response is compared
+ * with that for a softer contact, and refused when they differ by more than `doubtful`. */
 static const double unsettled = 100;
+static const double softer_contact = 1e3;
+static const double doubtful = 1e-2;
 
 enum { ATTEMPTS = 4 };
 
@@ -48,7 +51,8 @@ enum status sensitivity_create(const struct mesh *mesh, const struct material_sp
   s->stiffness = s->model->contact.stiffness;
   s->smoothing = s->model->contact.smoothing;
   s->cap = rigid_contact;
-  status = state_create(s->model, &s->state);
+  s->vector = malloc(2 * sizeof *s->vector * ((size_t)s->model->dof_count + 1));
+  status = s->vector ? state_create(s->model, &s->state) : STATUS_NO_MEMORY;
   if (status == STATUS_OK) {
     status = equilibrium_create(s->model, &s->solver, error);
   }
@@ -77,6 +81,7 @@ void sensitivity_destroy(struct sensitivity *s) {
   model_destroy(s->model);
   free(s->mesh.x);
   free(s->x);
+  free(s->vector);
   free(s);
 }
 
@@ -100,11 +105,12 @@ static double imbalance(struct sensitivity *s) {
   return most;
 }
 
-/* Brings a copy of the state closer to equilibrium than the load path needs. */
-static enum status settle(struct sensitivity *s, const struct fe_state *state) {
+/* Brings a copy of the state closer to equilibrium than the load path needs. *settled tells
+ * whether the multipliers have come to rest. */
+static enum status settle(struct sensitivity *s, const struct fe_state *state, bool *settled) {
   double mu = material_shear_modulus(&s->model->material);
   double tolerance = fmax(traction_tolerance * s->load.pressure, traction_floor * mu);
-  double rest = INFINITY;
+  double rest = INFINITY, before = INFINITY;
   enum status status = STATUS_OK;
   state_copy(s->model, &s->state, state);
   s->solver->options.traction_tolerance = tolerance;
@@ -112,27 +118,59 @@ static enum status settle(struct sensitivity *s, const struct fe_state *state) {
     int iterations;
     s->solver->factor_fits = false;
     status = equilibrium_solve(s->solver, &s->load, s->load.pressure, &s->state, &iterations);
+    before = rest;
     rest = imbalance(s);
+    if (rest > 0.5 * before) {
+      break;
+    }
   }
-  return status == STATUS_OK && !(rest <= unsettled * tolerance) ? STATUS_DIVERGED : status;
+  *settled = rest <= unsettled * tolerance;
+  return status;
+}
+
+/* Factorises the tangent with closed contact `cap` times as stiff as its penalty. With `response`
+ * not NULL: the growth of the enclosed volume per pressure, m3/Pa. */
+static enum status factorise(struct sensitivity *s, double cap, double *response) {
+  struct fe_model *m = s->model;
+  contact_follow(&m->contact, cap);
+  enum status status = model_evaluate(m, &s->state, &s->load, true);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  model_factor(m);
+  if (response) {
+    double *z = s->vector + m->dof_count;
+    model_volume(m, &s->state, s->vector);
+    model_solve(m, s->vector, z);
+    *response = 0;
+    for (int i = 0; i < m->dof_count; i++) {
+      *response += s->vector[i] * z[i];
+    }
+  }
+  return STATUS_OK;
 }
 
 enum status sensitivity_linearise(struct sensitivity *s, const struct fe_state *state,
                                   const struct fe_load *load) {
-  struct fe_model *m = s->model;
-  contact_follow(&m->contact, 0);
+  bool settled = true;
+  double soft, rigid;
+  contact_follow(&s->model->contact, 0);
+  s->load = *load;
+  s->load.stiffness_pressure = load->pressure;
+  s->doubt = 0;
   enum status status = sensitivity_place(s, &s->original);
   if (status == STATUS_OK) {
-    s->load = *load;
-    s->load.stiffness_pressure = load->pressure;
-    status = settle(s, state);
+    status = settle(s, state, &settled);
+  }
+  if (status == STATUS_OK && !settled) {
+    status = factorise(s, softer_contact, &soft);
   }
   if (status == STATUS_OK) {
-    contact_follow(&m->contact, s->cap);
-    status = model_evaluate(m, &s->state, &s->load, true);
+    status = factorise(s, s->cap, settled ? NULL : &rigid);
   }
-  if (status == STATUS_OK) {
-    model_factor(m);
+  if (status == STATUS_OK && !settled) {
+    s->doubt = fabs(rigid / soft - 1);
+    status = s->doubt < doubtful ? STATUS_OK : STATUS_DIVERGED;
   }
   return status;
 }

@@ -30,6 +30,8 @@ struct sensitivity {
   double stiffness, smoothing; /* of the contact of the original */
   double length;               /* extent of the body, m */
   double cap;                  /* stiffness of closed contact relative to its penalty */
+  double doubt;                /* of the last linearisation: see there */
+  double *vector;              /* 2 x dof_count */
 };
 
 /* Prepares for states of the body that `mesh` and `material` describe, with a model of its own;
@@ -41,8 +43,10 @@ enum status sensitivity_create(const struct mesh *mesh, const struct material_sp
 void sensitivity_destroy(struct sensitivity *s);
 
 /* Factorises the tangent at a converged state, having brought a copy of it (s->state) closer to
- * equilibrium than the load path needs. The body is then the original. STATUS_OK; the failures of
- * equilibrium_solve; or DIVERGED when contact does not settle. */
+ * equilibrium than the load path needs. The body is then the original. Where multipliers creep on
+ * without end, s->doubt is the relative change of the body's response between soft and rigid
+ * contact, else 0. STATUS_OK; the failures of equilibrium_solve; or DIVERGED when the doubt is too
+ * great. */
 enum status sensitivity_linearise(struct sensitivity *s, const struct fe_state *state,
                                   const struct fe_load *load);
 

@@ -119,12 +119,16 @@ static enum status refuse(const struct reader *reader, const char *place, const 
   size_t length = 0;
   for (int i = 0; i < count; i++) {
     words[i] = known[i].pointer;
-    int more = snprintf(list + length, sizeof list - length, "%s%s", i ? ", " : "", words[i]);
-    if (length + (size_t)more >= sizeof list - 4) {
-      memcpy(list + length, " ...", 5);
+  }
+  for (int i = 0; i < count; i++) {
+    char more[sizeof known->pointer + 2];
+    size_t size = (size_t)snprintf(more, sizeof more, "%s%s", i ? ", " : "", words[i]);
+    if (length + size + sizeof " ..." > sizeof list) {
+      memcpy(list + length, " ...", sizeof " ...");
       break;
     }
-    length += (size_t)more;
+    memcpy(list + length, more, size + 1);
+    length += size;
   }
   const char *near = text_nearest(pointer, words, (size_t)count);
   return error_set(reader->error, STATUS_INVALID, place,

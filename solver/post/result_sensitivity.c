@@ -1,6 +1,8 @@
 #include "solver/post/result_sensitivity.h"
 
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "solver/post/fit.h"
@@ -10,6 +12,9 @@
 /* Displacement of one node, relative to the body's length, from which the change of an angle is
  * taken. */
 static const double probe = 1e-5;
+
+/* Doubt about the contact that is mentioned. */
+static const double doubt_worth_a_word = 1e-4;
 
 /* What is differentiated at every recorded pressure, in the units of the result. */
 enum quantity {
@@ -32,6 +37,7 @@ static const char *const quantity_key[QUANTITIES] = {
 struct derivatives {
   double pressure;            /* Pa */
   bool known;                 /* false when the tangent there could not be found */
+  double doubt;               /* relative, from contact that has not settled */
   double (*row)[QUANTITIES];  /* per unit of each parameter */
   double to_load[QUANTITIES]; /* per kPa */
 };
@@ -180,6 +186,7 @@ static void differentiate(struct result_sensitivity *r, struct derivatives *d) {
   }
   differentiate_by_pressure(r, d->to_load);
   d->known = true;
+  d->doubt = s->doubt;
   for (int p = 0; p < r->count; p++) {
     if (r->variation[p].scale > 0) {
       d->known = d->known && differentiate_by(r, p, d->row[p]);
@@ -350,12 +357,44 @@ json_t *result_sensitivity_block(const struct result_sensitivity *r) {
     if (v->scale > 0) {
       json_object_set_new(entry, "metrics", metric_row(r, p));
       json_object_set_new(entry, "samples", sample_rows(r, p));
-    } else {
-      json_object_set_new(entry, "message",
-                          json_string("the body changes its layout here: no derivative"));
     }
     json_array_append_new(parameters, entry);
   }
   return json_pack("{s:o, s:{s:s, s:o}}", "parameters", parameters, "pressure", "unit", "kPa",
                    "samples", sample_rows(r, -1));
+}
+
+/* Appends a sentence to the warnings. */
+static void warn(json_t *warnings, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+static void warn(json_t *warnings, const char *format, ...) {
+  char sentence[200];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(sentence, sizeof sentence, format, arguments);
+  va_end(arguments);
+  json_array_append_new(warnings, json_string(sentence));
+}
+
+enum status result_sensitivity_store(const struct result_sensitivity *r, json_t *document) {
+  json_t *warnings = json_object_get(document, "warnings");
+  for (int p = 0; p < r->count; p++) {
+    if (r->variation[p].scale == 0) {
+      warn(warnings, "no derivatives to %s: at this value the body changes its layout",
+           r->variation[p].parameter->pointer);
+    }
+  }
+  for (int i = 0; i < r->state_count; i++) {
+    if (!r->state[i].known) {
+      warn(warnings, "no derivatives at %.6g kPa: the contact does not settle there",
+           1e-3 * r->state[i].pressure);
+    } else if (r->state[i].doubt > doubt_worth_a_word) {
+      warn(warnings,
+           "the contact at %.6g kPa settles slowly: the derivatives there may be off by "
+           "%.1g %%",
+           1e-3 * r->state[i].pressure, 100 * r->state[i].doubt);
+    }
+  }
+  json_t *block = result_sensitivity_block(r);
+  return json_object_set_new(document, "sensitivity", block) == 0 ? STATUS_OK : STATUS_NO_MEMORY;
 }

@@ -22,4 +22,8 @@ enum status result_sensitivity_add(struct result_sensitivity *r, const struct pa
 /* The block, a new reference: see schema/result.schema.json. NULL when memory runs out. */
 json_t *result_sensitivity_block(const struct result_sensitivity *r);
 
+/* Sets the block in a result document and adds to its warnings what has no derivatives. STATUS_OK
+ * or NO_MEMORY. */
+enum status result_sensitivity_store(const struct result_sensitivity *r, json_t *document);
+
 #endif
