@@ -2,50 +2,67 @@
 #include <math.h>
 #include "solver/mesh/pneunet.h"
 
-/* The rule of an accuracy tier. The lengths of first and last cells grade the mesh towards the
- * inner corners, where the stress is singular. */
+/* The rule of an accuracy tier, found by measurement on bodies of many proportions
+ * (tests/bench/bench_error.c). First and last cells of other lengths grade the mesh towards the
+ * inner corners, where the stress is singular: the root of the walls above all. Graded so, one
+ * cell through an axial wall is enough unless the cavity is squat. */
 struct tier {
-  struct pneunet_cells cells;        /* least numbers, and grading */
-  double cavity, half_width, height; /* longest cell, relative to the extent given below */
-  double bottom;
+  struct pneunet_cells cells;
+  double cavity, half_width; /* longest cell relative to the height of the cavity */
 };
+
+/* A cavity longer than this part of its height has stiff axial walls, which need more cells. */
+static const double squat_ratio = 0.75;
+
+/* What the tiers have in common; where a feature has one cell, its length changes little. */
+#define PLAIN_CELLS                                                                                \
+  .gap = {.cells = 1}, .channel = {.cells = 2}, .stem = {.cells = 1}, .side_wall = {.cells = 1},   \
+  .below = {.cells = 1}, .duct = {.cells = 1}, .cover = {.cells = 1}, .slit = {.cells = 1},        \
+  .floor = {.cells = 1}, .top = {.cells = 1}
+
+static const struct tier tiers[] = {
+    [ACCURACY_FAST] = {{PLAIN_CELLS, .gap_wall = {.cells = 1}, .cavity = {.cells = 2},
+                        .half_width = {.cells = 1, .last = 0.25},
+                        .bottom = {.cells = 3, .last = 0.3},
+                        .height = {.cells = 3, .first = 0.2, .last = 0.6}},
+                       .cavity = 0.5,
+                       .half_width = 3},
+    [ACCURACY_STANDARD] = {{PLAIN_CELLS, .gap_wall = {.cells = 1}, .cavity = {.cells = 2},
+                            .half_width = {.cells = 2, .last = 0.25},
+                            .bottom = {.cells = 3, .last = 0.3},
+                            .height = {.cells = 3, .first = 0.2, .last = 0.6}},
+                           .cavity = 0.5,
+                           .half_width = 1.5},
+    [ACCURACY_FINE] = {{.gap_wall = {.cells = 2},
+                        .cavity = {.cells = 3, .first = 0.5, .last = 0.5},
+                        .gap = {.cells = 2},
+                        .channel = {.cells = 2},
+                        .stem = {.cells = 2},
+                        .half_width = {.cells = 3, .last = 0.3},
+                        .side_wall = {.cells = 1},
+                        .bottom = {.cells = 3, .last = 0.3},
+                        .below = {.cells = 1},
+                        .duct = {.cells = 1},
+                        .cover = {.cells = 1},
+                        .slit = {.cells = 1},
+                        .floor = {.cells = 1},
+                        .height = {.cells = 4, .first = 0.2, .last = 0.5},
+                        .top = {.cells = 2}},
+                       .cavity = 0.35,
+                       .half_width = 1},
+};
+
+#undef PLAIN_CELLS
 
 /* |y| where the stretch of the lateral axis between channel or stem and side wall begins. */
 static double inner_start(const struct pneunet_spec *p) {
   return pneunet_detached(p) ? p->stem : p->has_channel ? 0.5 * p->channel_width : 0;
 }
 
-/* z where the stretch of the vertical axis below the top wall begins. */
-static double cavity_floor(const struct pneunet_spec *p) {
-  return p->bottom_layer + (pneunet_detached(p) ? p->slit + p->slit_floor : 0);
+static double cavity_height(const struct pneunet_spec *p) {
+  double floor = p->bottom_layer + (pneunet_detached(p) ? p->slit + p->slit_floor : 0);
+  return p->height_base - p->top_wall - floor;
 }
-
-#define PLAIN                                                                                      \
-  { .cells = 1 }
-#define COMMON                                                                                     \
-  .gap = PLAIN, .channel = PLAIN, .stem = PLAIN, .below = PLAIN, .duct = PLAIN, .cover = PLAIN,    \
-  .slit = PLAIN, .floor = PLAIN, .cavity = PLAIN, .half_width = PLAIN, .bottom = PLAIN,            \
-  .height = PLAIN
-static const struct tier tiers[] = {
-    [ACCURACY_FAST] = {.cells = {COMMON, .gap_wall = {.cells = 2}, .side_wall = PLAIN,
-                                 .top = PLAIN},
-                       .cavity = .35,
-                       .half_width = .7,
-                       .bottom = .45,
-                       .height = .33},
-    [ACCURACY_STANDARD] = {.cells = {COMMON, .gap_wall = {.cells = 2}, .side_wall = PLAIN,
-                                     .top = PLAIN},
-                           .cavity = .35,
-                           .half_width = .7,
-                           .bottom = .45,
-                           .height = .22},
-    [ACCURACY_FINE] = {.cells = {COMMON, .gap_wall = {.cells = 2}, .side_wall = {.cells = 2},
-                                 .top = {.cells = 2}},
-                       .cavity = .18,
-                       .half_width = .24,
-                       .bottom = .2,
-                       .height = .11},
-};
 
 /* A number given by the job makes equal cells. */
 static void choose(int given, struct grid_division *division) {
@@ -54,9 +71,10 @@ static void choose(int given, struct grid_division *division) {
   }
 }
 
-/* Raises the number of cells until none is longer than `size`. */
+/* Raises the number of cells until none of equal ones is longer than `size`. */
 static void limit(double extent, double size, struct grid_division *division) {
-  int cells = (int)fmin(40, ceil(extent / size - 0.05));
+  static const double most = 40;
+  int cells = (int)fmin(most, ceil(extent / size - 0.05));
   division->cells = cells > division->cells ? cells : division->cells;
 }
 
@@ -64,11 +82,14 @@ struct pneunet_cells pneunet_resolution(const struct job_spec *spec) {
   const struct tier *tier = &tiers[spec->accuracy];
   const struct pneunet_spec *p = &spec->pneunet;
   struct pneunet_cells cells = tier->cells;
-  double h = p->height_base;
-  limit(p->cavity_length, tier->cavity * h, &cells.cavity);
-  limit(0.5 * p->width - p->side_wall - inner_start(p), tier->half_width * h, &cells.half_width);
-  limit(p->bottom_layer, tier->bottom * h, &cells.bottom);
-  limit(h - p->top_wall - cavity_floor(p), tier->height * h, &cells.height);
+  double height = cavity_height(p);
+  limit(p->cavity_length, tier->cavity * height, &cells.cavity);
+  limit(0.5 * p->width - p->side_wall - inner_start(p), tier->half_width * height,
+        &cells.half_width);
+  if (p->cavity_length > squat_ratio * height) {
+    cells.gap_wall.cells++;
+    cells.height.cells++;
+  }
   choose(spec->mesh.gap_wall, &cells.gap_wall);
   choose(spec->mesh.cavity, &cells.cavity);
   choose(spec->mesh.gap, &cells.gap);
@@ -82,6 +103,5 @@ struct pneunet_cells pneunet_resolution(const struct job_spec *spec) {
 
 void pneunet_refine(struct pneunet_cells *cells) {
   cells->gap_wall.split = 2;
-  cells->half_width.split = 2;
   cells->height.split = 2;
 }
