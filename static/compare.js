@@ -2,7 +2,7 @@
 
 import { request } from './api.js';
 import { find, make } from './dom.js';
-import { byImportance, number, quantity } from './format.js';
+import { byImportance, isErrorOf, number, quantity } from './format.js';
 import { showProblem } from './problem.js';
 
 function headOf(jobs) {
@@ -34,7 +34,8 @@ function metricRow({ name, values }) {
 
 function showTable({ jobs, parameters, metrics }) {
   const columns = jobs.length + 2;
-  const rows = metrics.sort((a, b) => byImportance(a.name, b.name));
+  const names = metrics.map(({ name }) => name);
+  const rows = metrics.filter(({ name }) => !isErrorOf(name, names)).sort((a, b) => byImportance(a.name, b.name));
   find('compare-table').replaceChildren(headOf(jobs),
     ...groupOf('Where the jobs differ', columns, parameters.map(parameterRow)),
     ...groupOf('Results', columns, rows.map(metricRow)));

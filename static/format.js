@@ -50,6 +50,11 @@ export function quantity(key) {
     : { label: sentence(key), unit: '' };
 }
 
+// Whether a key is that of the error estimate of another one: "<metric>_error".
+export function isErrorOf(key, keys) {
+  return key.endsWith('_error') && keys.includes(key.slice(0, -'_error'.length));
+}
+
 function rank(key) {
   const place = FIRST.indexOf(key);
   return place < 0 ? FIRST.length : place;

@@ -3,7 +3,7 @@
 import { isActive, jobUrl, post, request } from './api.js';
 import { describe, find, make, setText } from './dom.js';
 import {
-  byImportance, instant, moment, number, quantity, stateWord, withUnit,
+  byImportance, instant, isErrorOf, moment, number, quantity, stateWord, withUnit,
 } from './format.js';
 import { poll } from './poll.js';
 import { showProblem } from './problem.js';
@@ -95,17 +95,27 @@ function showState(job) {
   setText(find('reason'), reason);
 }
 
+// Two digits are enough for an estimate.
+function errorText(error) {
+  return typeof error === 'number' ? `±\u00a0${number(Number(error.toPrecision(2)))}` : '';
+}
+
 function showMetrics(metrics) {
-  const entries = Object.entries(metrics || {}).sort(([a], [b]) => byImportance(a, b));
+  const keys = Object.keys(metrics || {});
+  const entries = Object.entries(metrics || {}).filter(([key]) => !isErrorOf(key, keys))
+    .sort(([a], [b]) => byImportance(a, b));
   find('metrics').hidden = entries.length === 0;
   find('metric-table').replaceChildren(
     make('thead', {}, make('tr', {}, make('th', { scope: 'col' }, 'Metric'),
       make('th', { scope: 'col', class: 'number' }, 'Value'),
+      make('th', { scope: 'col', class: 'uncertainty' }, 'Error'),
       make('th', { scope: 'col' }, 'Unit'))),
     make('tbody', {}, ...entries.map(([key, value]) => {
       const { label, unit } = quantity(key);
       return make('tr', { 'data-metric': key }, make('th', { scope: 'row' }, label),
-        make('td', { class: 'number' }, number(value)), make('td', { class: 'unit' }, unit));
+        make('td', { class: 'number' }, number(value)),
+        make('td', { class: 'uncertainty' }, errorText(metrics[`${key}_error`])),
+        make('td', { class: 'unit' }, unit));
     })));
 }
 
