@@ -29,8 +29,8 @@ struct slope {
   char name[60];
 };
 
-/* The line of the slope that theory gives, through the last error that stands clear of round-off:
- * the smallest one that is at least a thousandth of the one before. */
+/* The line of the slope that theory gives, through the error in the middle of those before the
+ * errors stop falling: neither the coarsest mesh nor round-off says much about the slope. */
 static bool slope_line(double order, const struct point *points, size_t count,
                        struct slope *slope) {
   if (!(order > 0) || count < 2) {
@@ -45,9 +45,7 @@ static bool slope_line(double order, const struct point *points, size_t count,
   while (through + 1 < count && points[through + 1].y < points[through].y) {
     through++;
   }
-  /* Halfway, so that the line also fits what comes before round-off. */
-  through = through > 3 ? through / 2 : through;
-  struct point p = points[through];
+  struct point p = points[(through + 1) / 2];
   slope->ends[0] = (struct point){low, p.y + order * (low - p.x)};
   slope->ends[1] = (struct point){high, p.y + order * (high - p.x)};
   snprintf(slope->name, sizeof slope->name, "slope %g", order);

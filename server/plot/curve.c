@@ -3,6 +3,9 @@
 #include "server/plot/data.h"
 #include "server/plot/draw.h"
 
+/* From so many points on, the reference is drawn as a curve. */
+enum { DENSE = 40 };
+
 enum status draw_curve(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                        struct error *error) {
   (void)count;
@@ -23,22 +26,27 @@ enum status draw_curve(struct canvas *canvas, const struct plot_input *inputs, s
     char subtitle[DATA_HEADING], notice[DATA_HEADING];
     data_subtitle(&inputs[0], subtitle);
     data_notice(result, notice);
-    const struct chart_series series[] = {{.points = reference,
-                                           .count = reference_count,
-                                           .colour = colour_series(1),
-                                           .width = 2.2,
-                                           .name = "reference"},
-                                          {.points = computed,
+    bool dense = reference_count >= DENSE;
+    struct chart_series known_series = {.points = reference,
+                                        .count = reference_count,
+                                        .colour = colour_series(1),
+                                        .width = dense ? 2.2 : 0,
+                                        .marker = dense ? MARKER_NONE : MARKER_CROSS,
+                                        .name = "reference"};
+    struct chart_series computed_series = {.points = computed,
                                            .count = computed_count,
                                            .colour = colour_series(0),
+                                           .width = dense ? 0 : 1.8,
                                            .marker = MARKER_CIRCLE,
-                                           .name = "computed"}};
+                                           .name = "computed"};
+    /* Single values stay visible on top of the curve, a curve below the points. */
+    const struct chart_series series[] = {dense ? known_series : computed_series,
+                                          dense ? computed_series : known_series};
     struct chart chart = {.title = "Computed and reference",
                           .subtitle = subtitle,
                           .notice = notice,
                           .x_label = x_label ? x_label : "",
                           .y_label = y_label ? y_label : "",
-                          .from_zero = false,
                           .series = series,
                           .series_count = sizeof series / sizeof *series,
                           .empty = "This case has no curve"};

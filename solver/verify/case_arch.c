@@ -1,7 +1,10 @@
 /* Snap-through of a clamped shallow arch under a load at its crown, in plane strain: half of it,
- * clamped at one end and guided at the crown. The crown's way is prescribed and the load found, so
- * that both limit points are passed. */
+ * clamped at one end and guided at the crown. Both limit points are passed: in one case the crown's
+ * way is prescribed and the load found, in the other the path is followed by arc length. */
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include "solver/fe/equilibrium.h"
 #include "solver/verify/cases.h"
 
 /* ---- the closed form ----
@@ -92,23 +95,88 @@ static void arch_map(const void *context, int block, const double s[3], double x
 
 enum { ARCH_STEPS = 48 };
 
-static enum status snap(struct verify_run *run, const struct arch *a, struct verify_body *b,
-                        struct error *error) {
-  int crown = body_node(&b->mesh, 0, 0, a->rise);
+static const double farthest = 1.9; /* way of the crown over the rise */
+
+/* A way along the path; the points are those of the path. */
+typedef enum status arch_path(struct verify_run *run, const struct arch *a, struct verify_body *b,
+                              struct error *error);
+
+static enum status by_way(struct verify_run *run, const struct arch *a, struct verify_body *b,
+                          struct error *error) {
+  int crown = 3 * body_node(&b->mesh, 0, 0, a->rise) + 2;
   double load = 0, root = 0.01 / a->half_span;
-  /* Half of a unit load per width, spread over the crown's section. */
-  body_add_traction(b->model, 0, 0, (double[3]){0, 0, -0.5 / a->thickness});
-  verify_points_clear(run);
+  run->control.tolerance = 1e-11;
   for (int k = 1; k <= ARCH_STEPS; k++) {
-    double way = 1.9 * a->rise * k / ARCH_STEPS;
-    enum status status = newton_reach(b->model, b->model->equation[3 * crown + 2], -way, &b->state,
-                                      &load, &run->control);
+    double way = farthest * a->rise * k / ARCH_STEPS;
+    enum status status =
+        newton_reach(b->model, b->model->equation[crown], -way, &b->state, &load, &run->control);
     if (status != STATUS_OK) {
       return verify_failed(status, "the snap-through", error);
     }
     verify_point(run, way / a->rise, load, arch_load(a, way, &root));
   }
   return STATUS_OK;
+}
+
+static double product(int n, const double *a, const double *b) {
+  double sum = 0;
+  for (int i = 0; i < n; i++) {
+    sum += a[i] * b[i];
+  }
+  return sum;
+}
+
+/* One step of arc length `length`, onwards from the step `last` (dof_count; all zero at first),
+ * which becomes this step. */
+static enum status arc_step(struct equilibrium *solver, struct verify_body *b, double length,
+                            struct fe_load *load, double *direction, double *last) {
+  struct fe_model *m = b->model;
+  int n = m->dof_count, iterations;
+  enum status status = equilibrium_tangent(solver, load, true, &b->state, direction);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  bool back = product(n, direction, last) < 0;
+  double change = (back ? -length : length) / sqrt(product(n, direction, direction));
+  for (int d = 0; d < 3 * m->mesh->node_count; d++) {
+    if (m->equation[d] >= 0) {
+      last[m->equation[d]] = -b->state.u[d];
+    }
+  }
+  status = equilibrium_follow(solver, load, true, direction, change, &b->state, &iterations);
+  for (int d = 0; d < 3 * m->mesh->node_count; d++) {
+    if (m->equation[d] >= 0) {
+      last[m->equation[d]] += b->state.u[d];
+    }
+  }
+  return status;
+}
+
+static enum status by_arc(struct verify_run *run, const struct arch *a, struct verify_body *b,
+                          struct error *error) {
+  struct equilibrium *solver = NULL;
+  struct fe_load load = {0, 0, 0};
+  int crown = 3 * body_node(&b->mesh, 0, 0, a->rise) + 2, n = b->model->dof_count;
+  double *vectors = calloc(2 * (size_t)n + 1, sizeof *vectors), root = 0.01 / a->half_span, way = 0;
+  enum status status = vectors ? equilibrium_create(b->model, &solver, error)
+                               : verify_failed(STATUS_NO_MEMORY, "", error);
+  /* The crown moves most: a step of all unknowns moves it by about twice its share. */
+  double length = 0.5 * farthest * a->rise / ARCH_STEPS * sqrt(n / 3.0);
+  for (int k = 0; status == STATUS_OK && way < farthest && k < 2 * ARCH_STEPS; k++) {
+    solver->options.step_tolerance = 1e-10;
+    solver->options.deadline_s = run->control.deadline_s;
+    solver->options.cancelled = run->control.cancelled;
+    status = arc_step(solver, b, length, &load, vectors, vectors + n);
+    if (status != STATUS_OK) {
+      verify_failed(status, "the step of arc length", error);
+      break;
+    }
+    way = -b->state.u[crown] / a->rise;
+    verify_point(run, way, load.dead, arch_load(a, way * a->rise, &root));
+  }
+  equilibrium_destroy(solver);
+  free(vectors);
+  return status;
 }
 
 /* Largest value and the smallest one behind it, by parabolas through the neighbours. */
@@ -131,7 +199,7 @@ static void limits(const struct verify_run *run, bool reference, double limit[2]
   }
 }
 
-static enum status arch_mesh(struct verify_run *run, const struct arch *a,
+static enum status arch_mesh(struct verify_run *run, const struct arch *a, arch_path *path,
                              const struct material_spec *material, int cells, struct error *error) {
   struct body body = {.blocks = 1, .cells = {cells, 1, 1}, .map = arch_map, .context = a};
   struct verify_body b = {.model = NULL};
@@ -143,7 +211,10 @@ static enum status arch_mesh(struct verify_run *run, const struct arch *a,
     status = verify_body_open(&b, material, false, error);
   }
   if (status == STATUS_OK) {
-    status = snap(run, a, &b, error);
+    /* Half of a unit load per width, spread over the crown's section. */
+    body_add_traction(b.model, 0, 0, (double[3]){0, 0, -0.5 / a->thickness});
+    verify_points_clear(run);
+    status = path(run, a, &b, error);
   }
   if (status == STATUS_OK) {
     double computed[2], reference[2];
@@ -157,7 +228,7 @@ static enum status arch_mesh(struct verify_run *run, const struct arch *a,
   return status;
 }
 
-enum status case_arch(struct verify_run *run, struct error *error) {
+static enum status arch_case(struct verify_run *run, arch_path *path, struct error *error) {
   const struct material_spec material = {
       .model = MATERIAL_NEO_HOOKE, .terms = 1, .c = {1e6}, .bulk_ratio = 1000};
   double mu = material.c[0], kappa = mu * material.bulk_ratio;
@@ -167,9 +238,16 @@ enum status case_arch(struct verify_run *run, struct error *error) {
                       .half_span = 0.5,
                       .modulus = 4 * mu * (3 * kappa + mu) / (3 * kappa + 4 * mu)};
   enum status status = STATUS_OK;
-  run->control.tolerance = 1e-11;
   for (int level = 0; status == STATUS_OK && level < run->refinement; level++) {
-    status = arch_mesh(run, &arch, &material, 12 << level, error);
+    status = arch_mesh(run, &arch, path, &material, 12 << level, error);
   }
   return status;
+}
+
+enum status case_arch(struct verify_run *run, struct error *error) {
+  return arch_case(run, by_way, error);
+}
+
+enum status case_arch_by_arc_length(struct verify_run *run, struct error *error) {
+  return arch_case(run, by_arc, error);
 }

@@ -310,6 +310,8 @@ static const struct verify_case cases[] = {
      .point = "x_over_half_width",
      .x_label = "Distance over half width",
      .y_label = "Pressure over the largest one",
+     .norm = "largest pressure",
+     .other = "half width",
      .bound = 0.05,
      .bound_because =
          "two elements over the half width: the edge of the contact is found to a quarter of one",
@@ -343,7 +345,7 @@ static const struct verify_case cases[] = {
      .bound_because = "scatter of the measurements about Ogden's fit",
      .run = case_treloar_equibiaxial},
     {.name = "shallow-arch",
-     .title = "Snap-through of a clamped shallow arch, load at the crown",
+     .title = "Snap-through of a clamped shallow arch, way of the crown prescribed",
      .quantity = "upper limit load per width",
      .unit = "N/m",
      .author = "H. L. Schreyer, E. F. Masur",
@@ -359,6 +361,23 @@ static const struct verify_case cases[] = {
      .bound_because = "curvature constant in each of twelve elements over half an arch; the "
                       "theory errs with the square of the slope, 0.2 %",
      .run = case_arch},
+    {.name = "shallow-arch-arc-length",
+     .title = "The same snap-through, followed by arc length",
+     .quantity = "upper limit load per width",
+     .unit = "N/m",
+     .author = "H. L. Schreyer, E. F. Masur",
+     .year = 1966,
+     .source = "Buckling of shallow arches (closed form of the shallow-arch equations)",
+     .size = ELEMENT_SIZE,
+     .point = "way_over_rise",
+     .x_label = "Way of the crown over the rise",
+     .y_label = "Load per width (N/m)",
+     .norm = "upper limit load",
+     .other = "lower limit load",
+     .bound = 0.05,
+     .bound_because = "curvature constant in each of twelve elements over half an arch; the "
+                      "theory errs with the square of the slope, 0.2 %",
+     .run = case_arch_by_arc_length},
 };
 
 const struct verify_case *verify_cases(int *count) {

@@ -63,6 +63,7 @@ void verify_row_other(struct verify_run *run, double error);
 
 /* Forgets the points of a coarser mesh. */
 void verify_points_clear(struct verify_run *run);
+/* reference is NaN where there is none. */
 void verify_point(struct verify_run *run, double x, double computed, double reference);
 /* Largest error of the points, each relative to its own reference. */
 double verify_points_worst(const struct verify_run *run);

@@ -46,9 +46,7 @@ static json_t *samples_array(const struct verify_case *c, const struct verify_re
     set_real(o, c->point, p->x);
     set_real(o, "computed", p->computed);
     set_real(o, "reference", p->reference);
-    if (p->reference != 0) {
-      set_real(o, "error_percent", 100 * fabs(p->computed / p->reference - 1));
-    }
+    set_real(o, "error_percent", 100 * fabs(p->computed / p->reference - 1));
     json_array_append_new(samples, o);
   }
   for (int i = 0; !c->point && i < r->row_count; i++) {
