@@ -13,6 +13,10 @@ enum {
   CHORD_STEPS = 12
 };
 
+/* Overlap, in thicknesses of the thinnest wall, that is put up with when multipliers do not settle.
+ */
+static const double penetration_tolerance = 0.002;
+
 static double body_length(const struct mesh *mesh) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   for (int n = 0; n < mesh->node_count; n++) {
@@ -340,29 +344,32 @@ static enum status augment(struct equilibrium *s, struct fe_load *load, struct f
                            int *iterations) {
   struct fe_model *m = s->model;
   double relaxation = 0;
-  for (int k = 0; k < AUGMENTATIONS; k++) {
+  bool settled = false;
+  for (int k = 0; k < AUGMENTATIONS && !settled; k++) {
     enum status status = meet(s, load, state);
     if (status != STATUS_OK) {
       return status;
     }
     double change = contact_update_multipliers(&m->contact, &relaxation);
+    settled = change < s->options.traction_tolerance;
     if (s->verbose) {
       fprintf(stderr, "    augmentation %d: change %.3e Pa, gap %.3e\n", k, change,
               contact_summarise(&m->contact).min_gap);
     }
-    if (change < s->options.traction_tolerance) {
+    if (settled) {
       break;
     }
     status = model_evaluate(m, state, load, false);
-    if (status == STATUS_OK && polish(s, load, state, INFINITY, 1)) {
-      continue;
+    if (status == STATUS_OK && !polish(s, load, state, INFINITY, 1)) {
+      status = newton(s, load, load->pressure, state, iterations);
     }
-    status = newton(s, load, load->pressure, state, iterations);
     if (status != STATUS_OK) {
       return status;
     }
   }
-  return STATUS_OK;
+  bool tight =
+      contact_summarise(&m->contact).penetration < penetration_tolerance * m->mesh->wall_thickness;
+  return settled || tight ? STATUS_OK : STATUS_CONTACT;
 }
 
 /* Multipliers to start from: those of the state, carried on at the rate of the last step. */
