@@ -20,6 +20,8 @@
   X(UNSTABLE, "material_instability", "the material law lost its stability")                       \
   X(STEP_MINIMUM, "step_below_minimum", "the load step fell below its minimum")                    \
   X(LIMIT_POINT, "limit_point", "the load passed a limit point of the equilibrium path")           \
+  X(UNSTABLE_PATH, "loss_of_stability",                                                            \
+    "the equilibrium loses its stability: it would snap or wrinkle")                               \
   X(TIMEOUT, "timeout", "the time limit was reached")                                              \
   X(CANCELLED, "cancelled", "the work was cancelled")                                              \
   X(INTERNAL, "internal_error", "an invariant of the program does not hold")

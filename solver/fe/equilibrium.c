@@ -278,6 +278,8 @@ static enum status newton(struct equilibrium *s, struct fe_load *load, double st
                           struct fe_state *state, int *iterations) {
   struct fe_model *m = s->model;
   struct progress progress = {INFINITY, 0};
+  s->fewest_negative = m->dof_count;
+  s->most_negative = 0;
   for (int it = 0; it < s->options.max_iterations; it++) {
     load->stiffness_pressure = it == 0 ? stiffness_pressure : load->pressure;
     enum status status = check_limits(s);
@@ -288,6 +290,10 @@ static enum status newton(struct equilibrium *s, struct fe_load *load, double st
       return status;
     }
     s->negative_pivots = model_factor(m);
+    s->fewest_negative =
+        s->negative_pivots < s->fewest_negative ? s->negative_pivots : s->fewest_negative;
+    s->most_negative =
+        s->negative_pivots > s->most_negative ? s->negative_pivots : s->most_negative;
     renew_response(s, state);
     double change = correction(s, s->step);
     ++*iterations;
@@ -459,4 +465,21 @@ enum status equilibrium_follow(struct equilibrium *s, struct fe_load *load, bool
   s->pressure_step = 0;
   s->factor_fits = false;
   return status;
+}
+
+void equilibrium_softest_mode(struct equilibrium *s, double *mode) {
+  enum { ITERATIONS = 8 };
+  int count = s->model->dof_count;
+  unsigned seed = 1;
+  for (int i = 0; i < count; i++) {
+    seed = 1664525u * seed + 1013904223u;
+    mode[i] = (double)(seed >> 8) / (1 << 23) - 1;
+  }
+  for (int k = 0; k < ITERATIONS; k++) {
+    model_solve(s->model, mode, mode);
+    double size = largest(s, mode);
+    for (int i = 0; i < count && size > 0; i++) {
+      mode[i] /= size;
+    }
+  }
 }

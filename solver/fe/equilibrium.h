@@ -36,12 +36,13 @@ struct equilibrium {
   double *chord;         /* dof_count */
   double *increment;     /* node_count x 3 */
   struct equilibrium_control control;
-  double *lambda_step;    /* change of every contact multiplier in the last solve, Pa */
-  double pressure_step;   /* change of the pressure in the last solve, Pa */
-  bool factor_fits;       /* the factor is that of the last equilibrium, or next to it */
-  int negative_pivots;    /* of the last factorisation */
-  double last_correction; /* rms of the last correction, m */
-  int verbose;            /* 1: a line an iteration on standard error */
+  double *lambda_step;  /* change of every contact multiplier in the last solve, Pa */
+  double pressure_step; /* change of the pressure in the last solve, Pa */
+  bool factor_fits;     /* the factor is that of the last equilibrium, or next to it */
+  int negative_pivots;  /* of the last factorisation */
+  int fewest_negative, most_negative; /* over the factorisations of the last solve */
+  double last_correction;             /* rms of the last correction, m */
+  int verbose;                        /* 1: a line an iteration on standard error */
 };
 
 enum status equilibrium_create(struct fe_model *model, struct equilibrium **out,
@@ -71,5 +72,9 @@ enum status equilibrium_tangent(struct equilibrium *solver, const struct fe_load
 enum status equilibrium_follow(struct equilibrium *solver, struct fe_load *load, bool dead,
                                const double *direction, double change, struct fe_state *state,
                                int *iterations);
+
+/* Shape in which the last factorised tangent is softest, by inverse iteration: mode[dof_count],
+ * of largest entry 1. */
+void equilibrium_softest_mode(struct equilibrium *solver, double *mode);
 
 #endif

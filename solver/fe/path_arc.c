@@ -9,10 +9,12 @@ enum {
   ARC_STEPS = 150,   /* of a whole walk */
   STEPS_BEYOND = 12, /* after a limit point */
   EASY_ITERATIONS = 4,
-  HARD_ITERATIONS = 8
+  HARD_ITERATIONS = 8,
+  PUSHES = 3 /* changes of the branch in a whole walk */
 };
+static const double raise = 0.005; /* of the whole load, when the branch is left */
 static const double cut_factor = 0.4, grow_factor = 1.6, slow_factor = 0.7;
-static const double smallest_part = 1e-3; /* of the first step */
+static const double smallest_part = 5e-3; /* of the first step */
 static const double deepest_fall = 0.7;   /* of the load at the limit point */
 static const double landing_tolerance = 1e-3;
 
@@ -175,6 +177,53 @@ static enum status follow(struct arc *a, double goal) {
   return a->beyond > 0 ? STATUS_LIMIT_POINT : w->failure;
 }
 
+/* Tries to go on where the arc has got stuck at a singular tangent: from the last state, pushed
+ * along the softest mode, either way, to a stable equilibrium at a slightly higher load. */
+static enum status leave_branch(struct arc *a, double goal) {
+  static const double pushes[] = {0.05, -0.05, 0.2, -0.2, 0.5, -0.5}; /* in walls */
+  struct walk *w = a->walk;
+  struct equilibrium *solver = w->solver;
+  const struct fe_model *m = solver->model;
+  struct fe_load load = walk_load(w, a->stage, w->value);
+  enum status status = equilibrium_tangent(solver, &load, a->stage->dead, w->state, a->direction);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  equilibrium_softest_mode(solver, a->last);
+  load = walk_load(w, a->stage, fmin(goal, w->value + raise * a->stage->end));
+  for (size_t k = 0; k < sizeof pushes / sizeof *pushes; k++) {
+    int iterations;
+    state_copy(m, &w->trial, w->state);
+    for (int d = 0; d < 3 * m->mesh->node_count; d++) {
+      if (m->equation[d] >= 0) {
+        w->trial.u[d] += pushes[k] * m->mesh->wall_thickness * a->last[m->equation[d]];
+      }
+    }
+    solver->factor_fits = false;
+    status = equilibrium_solve(solver, &load, load.pressure, &w->trial, &iterations);
+    w->iterations += iterations;
+    if (solver->verbose) {
+      fprintf(stderr, "  pushed %.2f walls: %s after %d factorisations, %d negative\n", pushes[k],
+              status_word(status), iterations, solver->negative_pivots);
+    }
+    if (walk_final(status)) {
+      return status;
+    }
+    if (status == STATUS_OK && solver->negative_pivots == 0) {
+      arrive(w, a->stage->dead ? load.dead : load.pressure);
+      return STATUS_OK;
+    }
+  }
+  return STATUS_UNSTABLE_PATH;
+}
+
+/* Whether the tangent is singular next to the last state: the last attempt, a tiny one, met it with
+ * and without negative pivots. */
+static bool at_singular_tangent(const struct arc *a) {
+  const struct equilibrium *s = a->walk->solver;
+  return a->walk->failure != STATUS_OK && s->most_negative > s->fewest_negative;
+}
+
 enum status walk_arc(struct walk *w, const struct stage *stage, double goal) {
   const struct fe_model *m = w->solver->model;
   struct arc a = {.walk = w, .stage = stage, .value = w->value};
@@ -185,6 +234,11 @@ enum status walk_arc(struct walk *w, const struct stage *stage, double goal) {
       state_create(m, &a.passed) == STATUS_OK) {
     state_copy(m, &a.state, w->state);
     status = follow(&a, goal);
+    if (!walk_final(status) && status != STATUS_OK && status != STATUS_LIMIT_POINT &&
+        at_singular_tangent(&a)) {
+      status = w->pushed < PUSHES ? leave_branch(&a, goal) : STATUS_UNSTABLE_PATH;
+      w->pushed++;
+    }
   }
   state_release(&a.state);
   state_release(&a.passed);

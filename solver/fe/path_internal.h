@@ -21,6 +21,7 @@ struct walk {
   double step;
   int iterations;      /* since the last recorded state */
   int arc_steps;       /* of the whole walk */
+  int pushed;          /* changes of the branch */
   double limit;        /* load at the limit point; 0 without one */
   double beyond;       /* lowest load to which the path was followed after it */
   enum status failure; /* of the last attempt */
