@@ -151,6 +151,9 @@ START_TEST(names_of_a_kind) {
     count++;
   }
   ck_assert_uint_eq(count, 4);
+  ck_assert_str_eq(plot_names("verify")[0], "convergence");
+  ck_assert_str_eq(plot_names("verify")[1], "curve");
+  ck_assert_ptr_null(plot_names("verify")[2]);
   ck_assert_ptr_null(plot_names("no-such-kind")[0]);
   ck_assert_ptr_null(plot_names(NULL)[0]);
 }
@@ -273,19 +276,48 @@ START_TEST(incomplete_results) {
       "{\"midlines\":[{\"pressure_kPa\":5,\"points_mm\":[[3,0,3],[3,0,3]]}]}",
       "{\"metrics\":{\"contact_onset_kPa\":-1e9},\"samples\":[{\"pressure_kPa\":1,"
       "\"bending_angle_deg\":1}]}",
+      "{\"case\":7,\"meshes\":{}}",
+      "{\"case\":{\"order\":4,\"point\":\"x\"},\"meshes\":[{},null,{\"size\":0,"
+      "\"error_percent\":1}],\"samples\":[{\"x\":1}]}",
+      "{\"case\":{\"order\":1e9,\"point\":3,\"size\":\"\"},\"meshes\":[{\"size\":1e-300,"
+      "\"error_percent\":0},{\"size\":1e9,\"error_percent\":1e9}]}",
+      "{\"case\":{\"order\":2,\"point\":\"x\",\"x_label\":\"x\"},\"meshes\":[{\"size\":1,"
+      "\"error_percent\":-1},{\"size\":0.5,\"error_percent\":1}],"
+      "\"samples\":[{\"x\":1,\"computed\":1e9,\"reference\":-1e9}]}",
   };
-  static const char *const plots[] = {"angle", "midline", "tip", "overlay"};
+  static const char *const plots[] = {"angle", "midline", "tip", "overlay", "convergence", "curve"};
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
     json_t *result = json_loads(texts[i], 0, NULL);
     ck_assert_ptr_nonnull(result);
     struct plot_input input = {result, NULL, LONG_NAME, 8, NULL};
-    for (size_t k = 0; k < 4; k++) {
+    for (size_t k = 0; k < sizeof plots / sizeof *plots; k++) {
       char name[64];
       snprintf(name, sizeof name, "incomplete-%zu-%s", i, plots[k]);
       free(render(plots[k], &input, 1, 800, 600, name).rgb);
     }
     json_decref(result);
   }
+}
+END_TEST
+
+/* The error falls from right to left; without a mesh there is no curve. */
+START_TEST(convergence_shows_the_error) {
+  json_t *result = json_loads("{\"status\":\"succeeded\",\"case\":{\"order\":2},\"meshes\":["
+                              "{\"size\":0.5,\"error_percent\":1},"
+                              "{\"size\":0.25,\"error_percent\":0.25},"
+                              "{\"size\":0.125,\"error_percent\":0.0625}]}",
+                              0, NULL);
+  struct plot_input input = {result, NULL, "order two", 0, NULL};
+  struct picture picture = render("convergence", &input, 1, 800, 600, "convergence");
+  double left = mean_y(&picture, 80, 300, 0, 114, 178);
+  double right = mean_y(&picture, 500, 780, 0, 114, 178);
+  ck_assert_double_gt(left, right + 100);
+  free(picture.rgb);
+  json_object_set_new(result, "meshes", json_array());
+  picture = render("convergence", &input, 1, 800, 600, NULL);
+  ck_assert_uint_eq(count_colour(&picture, 0, 114, 178), 0);
+  free(picture.rgb);
+  json_decref(result);
 }
 END_TEST
 
@@ -444,6 +476,7 @@ int main(void) {
   tcase_add_test(pictures, surface_shows_both_states);
   tcase_add_test(pictures, damaged_surfaces);
   tcase_add_test(pictures, incomplete_results);
+  tcase_add_test(pictures, convergence_shows_the_error);
   tcase_add_test(pictures, a_result_that_stopped_early_says_so);
   tcase_add_test(pictures, odd_names);
   tcase_add_test(pictures, overlays);

@@ -59,6 +59,48 @@ START_TEST(ranges_grow_to_ticks) {
 }
 END_TEST
 
+/* Positions of logarithmic axes are decimal logarithms; every tick is 1, 2 or 5 times a power of
+ * ten, few of them, and all within the range. */
+START_TEST(logarithmic_ticks) {
+  static const double ranges[][2] = {{-0.9, -0.3}, {-12, 1},    {0, 0},
+                                     {-15, 9},     {2.1, 2.15}, {-3, 0}};
+  for (size_t r = 0; r < sizeof ranges / sizeof *ranges; r++) {
+    for (int target = 2; target <= 12; target++) {
+      double min = ranges[r][0], max = ranges[r][1];
+      ticks_widen_log(&min, &max, target);
+      ck_assert(min < max && min <= ranges[r][0] + 1e-6 && max >= ranges[r][1] - 1e-6);
+      struct ticks ticks = ticks_make_log(min, max, target);
+      ck_assert_int_ge(ticks.count, 2);
+      ck_assert_int_le(ticks.count, 2 * target + 4);
+      ck_assert_double_eq_tol(ticks_value(&ticks, 0), min, 1e-5 + ticks.step);
+      for (int i = 0; i < ticks.count; i++) {
+        double value = ticks_value(&ticks, i), digit = pow(10, value - floor(value + 1e-9));
+        ck_assert_double_le(value, max + 1e-6);
+        ck_assert(fabs(digit - 1) < 1e-6 || fabs(digit - 2) < 1e-6 || fabs(digit - 5) < 1e-6);
+      }
+    }
+  }
+  double min = NAN, max = NAN;
+  ticks_widen_log(&min, &max, 5);
+  ck_assert(min < max);
+}
+END_TEST
+
+START_TEST(logarithmic_labels) {
+  char text[TICKS_TEXT];
+  struct ticks wide = ticks_make_log(-12, 0, 4);
+  ticks_label(&wide, 0, text);
+  ck_assert_str_eq(text, "10\u207b\u00b9\u00b2");
+  struct ticks narrow = ticks_make_log(-1, 0, 6);
+  ck_assert_int_eq(narrow.count, 4);
+  ticks_label(&narrow, 1, text);
+  ck_assert_str_eq(text, "0.2");
+  struct ticks small = ticks_make_log(-5, -4, 6);
+  ticks_label(&small, 2, text);
+  ck_assert_str_eq(text, "5\u00b710\u207b\u2075");
+}
+END_TEST
+
 START_TEST(numbers) {
   static const struct {
     double value;
@@ -151,6 +193,8 @@ int main(void) {
   tcase_add_test(parts, ticks_are_round_and_inside);
   tcase_add_test(parts, labels_have_a_true_minus_and_no_minus_zero);
   tcase_add_test(parts, ranges_grow_to_ticks);
+  tcase_add_test(parts, logarithmic_ticks);
+  tcase_add_test(parts, logarithmic_labels);
   tcase_add_test(parts, numbers);
   tcase_add_test(parts, places_avoid_what_is_there);
   tcase_add_test(parts, a_label_stays_beside_its_point);
