@@ -43,7 +43,7 @@ enum status estimate_finer(const struct job_spec *spec, const struct solve *coar
   }
   if (status == STATUS_OK) {
     *finer = (struct sample){.pressure = pressure};
-    status = sample_measure(fine.model, fine.solver->retraction, &fine.state, finer);
+    status = sample_measure(fine.model, &fine.state, finer);
   }
   solve_release(&fine);
   return status;

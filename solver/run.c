@@ -46,7 +46,7 @@ static enum status prepare(struct run *run, struct error *error) {
   solver->options.deadline_s = spec->timeout_s > 0 ? clock_wall_s() + spec->timeout_s : 0;
   solver->options.cancelled = run->options->cancelled;
   solver->verbose = run->options->verbose;
-  run->result = result_create(spec, run->solve.model, solver->retraction);
+  run->result = result_create(spec, run->solve.model);
   if (!run->result) {
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the result");
   }

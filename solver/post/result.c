@@ -7,13 +7,12 @@
 
 static const double degree = M_PI / 180;
 
-struct result *result_create(const struct job_spec *spec, struct fe_model *model,
-                             const struct retraction *retraction) {
+struct result *result_create(const struct job_spec *spec, struct fe_model *model) {
   struct result *r = calloc(1, sizeof *r);
   if (!r) {
     return NULL;
   }
-  *r = (struct result){.spec = spec, .model = model, .retraction = retraction, .onset = -1};
+  *r = (struct result){.spec = spec, .model = model, .onset = -1};
   r->sample = calloc((size_t)spec->load.steps + 1, sizeof *r->sample);
   r->midlines = json_array();
   r->artifacts = json_array();
@@ -86,7 +85,7 @@ static json_t *midline(const struct result *r, const double *u, double pressure)
 /* A state where a held load found no equilibrium: one line of the table of the arc. */
 static enum status add_arc_point(struct result *r, const struct path_point *point) {
   struct sample s = {.pressure = point->pressure};
-  enum status status = sample_measure(r->model, r->retraction, point->state, &s);
+  enum status status = sample_measure(r->model, point->state, &s);
   r->arc_stretch = fmax(r->arc_stretch, s.max_stretch);
   if (status == STATUS_OK &&
       json_array_append_new(r->arc,
@@ -116,7 +115,7 @@ enum status result_add(struct result *r, const struct path_point *point) {
   }
   struct sample *s = &r->sample[r->sample_count];
   *s = (struct sample){.pressure = point->pressure, .iterations = point->iterations};
-  enum status status = sample_measure(m, r->retraction, state, s);
+  enum status status = sample_measure(m, state, s);
   if (status != STATUS_OK) {
     return status;
   }

@@ -9,10 +9,9 @@
 
 struct result;
 
-/* spec, model and retraction must outlive the result, which the caller owns. NULL when memory
+/* spec and model must outlive the result, which the caller owns. NULL when memory
  * runs out. */
-struct result *result_create(const struct job_spec *spec, struct fe_model *model,
-                             const struct retraction *retraction);
+struct result *result_create(const struct job_spec *spec, struct fe_model *model);
 void result_destroy(struct result *result);
 
 /* Notes whether the path started from that of a neighbouring design. */

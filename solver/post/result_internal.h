@@ -13,7 +13,6 @@ struct open_state {
 struct result {
   const struct job_spec *spec;
   struct fe_model *model;
-  const struct retraction *retraction;
   struct sample *sample;
   size_t sample_count;
   json_t *midlines;

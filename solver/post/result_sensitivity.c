@@ -45,7 +45,6 @@ struct derivatives {
 struct result_sensitivity {
   const struct job_spec *spec;
   struct sensitivity *linear;
-  struct retraction *retraction;
   struct variation *variation; /* one a parameter */
   double *mass;                /* derivative of the mass, g per unit of each parameter */
   int count;
@@ -69,7 +68,7 @@ static void measure_shape(const struct result_sensitivity *r, const double *u,
   const double degree = M_PI / 180;
   const struct mesh *mesh = &r->linear->mesh;
   struct shape shape;
-  shape_measure(mesh, r->retraction, u, &shape);
+  shape_measure(mesh, u, &shape);
   double rest = mesh->x[3 * mesh->centreline[mesh->section_count - 1] + 2];
   out[BENDING_ANGLE] = shape.bending_angle / degree;
   out[CHORD_ANGLE] = shape.chord_angle / degree;
@@ -229,7 +228,6 @@ enum status result_sensitivity_create(const struct job_spec *spec, const struct 
   if (status != STATUS_OK) {
     goto done;
   }
-  r->retraction = retraction_create(&r->linear->mesh);
   r->variation = calloc(parameters + 1, sizeof *r->variation);
   r->mass = calloc(parameters + 1, sizeof *r->mass);
   r->gradient = calloc((size_t)r->linear->model->dof_count * QUANTITIES, sizeof *r->gradient);
@@ -237,8 +235,8 @@ enum status result_sensitivity_create(const struct job_spec *spec, const struct 
   r->u = calloc(3 * nodes, sizeof *r->u);
   r->measured = calloc(nodes, 1);
   r->state = calloc((size_t)spec->load.steps + 1, sizeof *r->state);
-  bool enough = r->retraction && r->variation && r->mass && r->gradient && r->residual && r->u &&
-                r->measured && r->state;
+  bool enough =
+      r->variation && r->mass && r->gradient && r->residual && r->u && r->measured && r->state;
   status = enough ? STATUS_OK : STATUS_NO_MEMORY;
   for (size_t p = 0; status == STATUS_OK && p < parameters; p++) {
     status = variation_create(spec, mesh, &r->linear->original, &spec->sensitivity.parameter[p],
@@ -268,7 +266,6 @@ void result_sensitivity_destroy(struct result_sensitivity *r) {
   for (int i = 0; i < r->state_count; i++) {
     free(r->state[i].row);
   }
-  retraction_destroy(r->retraction);
   sensitivity_destroy(r->linear);
   free(r->variation);
   free(r->mass);

@@ -21,12 +21,12 @@ static void measure_contact(const struct fe_model *model, struct sample *sample)
   }
 }
 
-enum status sample_measure(struct fe_model *model, const struct retraction *retraction,
-                           const struct fe_state *state, struct sample *sample) {
+enum status sample_measure(struct fe_model *model, const struct fe_state *state,
+                           struct sample *sample) {
   const struct mesh *mesh = model->mesh;
   model_update_gaps(model, state);
   measure_contact(model, sample);
-  shape_measure(mesh, retraction, state->u, &sample->shape);
+  shape_measure(mesh, state->u, &sample->shape);
   double rest = mesh->x[3 * mesh->centreline[mesh->section_count - 1] + 2];
   sample->tip_deflection = rest - sample->shape.tip[2];
   sample->cavity_volume = model_volume(model, state, NULL) * (mesh->half ? 2 : 1);

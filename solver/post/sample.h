@@ -23,7 +23,7 @@ struct sample {
 
 /* Measures a state and renews the gaps of the model's contact; pressure and iterations are left
  * alone. STATUS_OK or NO_MEMORY. */
-enum status sample_measure(struct fe_model *model, const struct retraction *retraction,
-                           const struct fe_state *state, struct sample *sample);
+enum status sample_measure(struct fe_model *model, const struct fe_state *state,
+                           struct sample *sample);
 
 #endif

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include "solver/fe/vec3.h"
 
 /* Angle of a direction in the x-z plane, positive towards -z. */
 static double direction(const double a[3], const double b[3]) {
@@ -38,16 +39,63 @@ static void centreline_angles(const struct mesh *mesh, const double *u, double *
   }
 }
 
-void shape_measure(const struct mesh *mesh, const struct retraction *retraction, const double *u,
-                   struct shape *shape) {
-  double bending, chord, rotation[9], centre[3];
+/* Area of a face, from its diagonals. */
+static double face_area(const struct mesh *mesh, const int nodes[QUAD9_NODES]) {
+  double first[3], second[3], normal[3];
+  for (int i = 0; i < 3; i++) {
+    first[i] = mesh->x[3 * nodes[8] + i] - mesh->x[3 * nodes[0] + i];
+    second[i] = mesh->x[3 * nodes[6] + i] - mesh->x[3 * nodes[2] + i];
+  }
+  vec3_cross(first, second, normal);
+  return 0.5 * vec3_norm(normal);
+}
+
+static bool in_end_face(const struct mesh *mesh, const struct mesh_face *face,
+                        const int nodes[QUAD9_NODES]) {
+  bool inside = face->axis == 0 && face->side > 0;
+  for (int m = 0; m < QUAD9_NODES; m++) {
+    inside = inside && mesh->node_core[nodes[m]] &&
+             mesh->node_section[nodes[m]] == mesh->section_count - 1;
+  }
+  return inside;
+}
+
+/* Rotation about y, towards -z, that carries the bottom layer's end face best to where it is now:
+ * least squares over its area, so that it does not depend on where the nodes are. */
+static double end_face_angle(const struct mesh *mesh, const double *u) {
+  static const double simpson[3] = {1.0 / 6, 4.0 / 6, 1.0 / 6};
+  double area = 0, mean[4] = {0}, across = 0, along = 0;
+  for (int f = 0; f < mesh->face_count; f++) {
+    int nodes[QUAD9_NODES];
+    mesh_face_nodes(mesh, &mesh->faces[f], nodes);
+    if (!in_end_face(mesh, &mesh->faces[f], nodes)) {
+      continue;
+    }
+    double whole = face_area(mesh, nodes);
+    for (int m = 0; m < QUAD9_NODES; m++) {
+      const double *x = mesh->x + 3 * (size_t)nodes[m], *d = u + 3 * (size_t)nodes[m];
+      double weight = whole * simpson[m / 3] * simpson[m % 3];
+      double value[4] = {x[0], x[2], x[0] + d[0], x[2] + d[2]};
+      area += weight;
+      across += weight * (value[1] * value[2] - value[0] * value[3]);
+      along += weight * (value[0] * value[2] + value[1] * value[3]);
+      for (int k = 0; k < 4; k++) {
+        mean[k] += weight * value[k];
+      }
+    }
+  }
+  across -= (mean[1] * mean[2] - mean[0] * mean[3]) / area;
+  along -= (mean[0] * mean[2] + mean[1] * mean[3]) / area;
+  return atan2(across, along);
+}
+
+void shape_measure(const struct mesh *mesh, const double *u, struct shape *shape) {
+  double bending, chord;
   centreline_angles(mesh, NULL, &bending, &chord);
   centreline_angles(mesh, u, &shape->bending_angle, &shape->chord_angle);
   shape->bending_angle -= bending;
   shape->chord_angle -= chord;
-  retraction_frame(retraction, u, mesh->section_count - 1, rotation, centre);
-  /* The frame's x axis is the first column. */
-  shape->end_face_angle = unwrap(atan2(-rotation[6], rotation[0]), shape->bending_angle);
+  shape->end_face_angle = unwrap(end_face_angle(mesh, u), shape->bending_angle);
   place(mesh, u, mesh->section_count - 1, shape->tip);
 }
 

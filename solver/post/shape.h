@@ -3,19 +3,17 @@
 #define PNEULAB_POST_SHAPE_H
 
 #include "solver/fe/model.h"
-#include "solver/fe/retraction.h"
 
 struct shape {
   double bending_angle;  /* rad: turn of the bottom centreline from base to last chamber */
   double chord_angle;    /* rad: turn of the line from base to tip */
-  double end_face_angle; /* rad: turn of the bottom layer's frame at the end section */
+  double end_face_angle; /* rad: turn of the bottom layer's end face about y */
   double tip[3];         /* end of the bottom centreline, m */
 };
 
 /* Measures a state of a mesh with sections. Angles are positive towards -z and accumulate along
  * the body, so they pass 180 and 360 degrees; tapers of the undeformed body do not count. */
-void shape_measure(const struct mesh *mesh, const struct retraction *retraction, const double *u,
-                   struct shape *shape);
+void shape_measure(const struct mesh *mesh, const double *u, struct shape *shape);
 
 /* Bottom centreline: section_count points (m) into out[3 s + i]. */
 void shape_midline(const struct mesh *mesh, const double *u, double *out);

@@ -115,8 +115,16 @@ static json_t *case_object(int index, const struct error_case *c) {
                    c->estimate_s, "metrics", metrics);
 }
 
-static void print_case(int index, const struct error_case *c) {
-  printf("%4d %7d %8d", index, c->unknowns, c->reference_unknowns);
+static void print_case(int index, const struct job_spec *spec, const struct error_case *c) {
+  char runs[CHAMBERS_MAX + 1] = "";
+  for (int r = 0, n = 0; r < spec->pneunet.run_count; r++) {
+    for (int k = 0; k < spec->pneunet.runs[r].count; k++) {
+      runs[n++] = "ABC"[spec->pneunet.runs[r].config];
+      runs[n] = 0;
+    }
+  }
+  printf("%4d %s%c%c %7.2f deg %6d %7d", index, runs, spec->pneunet.has_channel ? 'c' : ' ',
+         spec->contact ? '*' : ' ', c->metric[0].value, c->unknowns, c->reference_unknowns);
   for (int k = 0; k < ERROR_METRICS; k++) {
     const struct error_metric *m = &c->metric[k];
     printf("  %7.2f +- %-5.2f", 100 * (m->value / m->reference - 1),
@@ -163,7 +171,7 @@ static void run_designs(const struct options *o, double (*place)[ROBUST_FACTORS]
       tally->failed++;
       continue;
     }
-    print_case(i, &c);
+    print_case(i, &spec, &c);
     add_case(&c, tally);
     json_array_append_new(list, case_object(i, &c));
     *last = c;

@@ -63,7 +63,7 @@ static enum status solve_reference(const struct job_spec *spec, struct sample *s
   }
   if (status == STATUS_OK) {
     *unknowns = fine.model->dof_count;
-    status = sample_measure(fine.model, fine.solver->retraction, &fine.state, sample);
+    status = sample_measure(fine.model, &fine.state, sample);
   }
   solve_release(&coarse);
   solve_release(&fine);
