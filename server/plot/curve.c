@@ -3,8 +3,9 @@
 #include "server/plot/data.h"
 #include "server/plot/draw.h"
 
-/* From so many points on, the reference is drawn as a curve. */
-enum { DENSE = 40 };
+/* From so many points on, the reference is drawn as a curve; fewer than FEW points are not joined,
+ * which would show kinks that are none. */
+enum { DENSE = 40, FEW = 12 };
 
 enum status draw_curve(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                        struct error *error) {
@@ -36,7 +37,7 @@ enum status draw_curve(struct canvas *canvas, const struct plot_input *inputs, s
     struct chart_series computed_series = {.points = computed,
                                            .count = computed_count,
                                            .colour = colour_series(0),
-                                           .width = dense ? 0 : 1.8,
+                                           .width = dense || computed_count < FEW ? 0 : 1.8,
                                            .marker = MARKER_CIRCLE,
                                            .name = "computed"};
     /* Single values stay visible on top of the curve, a curve below the points. */
