@@ -53,7 +53,7 @@ static enum status prepare(struct run *run, struct error *error) {
   const char *directory = run->options->out_dir;
   status = directory ? result_export(run->result, directory, error) : STATUS_OK;
   if (status == STATUS_OK && spec->sensitivity.count > 0) {
-    status = result_sensitivity_create(spec, &run->solve.mesh, &run->sensitivity, error);
+    status = result_sensitivity_create(spec, run->solve.model, &run->sensitivity, error);
   }
   return status;
 }

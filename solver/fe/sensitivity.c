@@ -21,11 +21,46 @@ static const double unsettled = 100;
 static const double softer_contact = 1e3;
 static const double doubtful = 1e-2;
 
-enum { ATTEMPTS = 4 };
+enum { ATTEMPTS = 8 };
 
-enum status sensitivity_create(const struct mesh *mesh, const struct material_spec *material,
-                               bool use_contact, const double gravity[3], struct sensitivity **out,
+static enum status copy_planes(const struct contact *from, struct fe_model *to,
                                struct error *error) {
+  enum status status = STATUS_OK;
+  for (int k = 0; status == STATUS_OK && k < from->plane_count; k++) {
+    const struct contact_plane *plane = &from->plane[k];
+    if (!plane->symmetry) { /* model_create makes that one */
+      status = model_add_plane(to, plane->point, plane->normal, error);
+    }
+  }
+  return status;
+}
+
+/* The model, its states and its solver. s->mesh has its own nodes. */
+static enum status prepare_model(struct sensitivity *s, const struct fe_model *from,
+                                 struct error *error) {
+  enum status status = model_create(&s->mesh, &from->material, from->use_contact, &s->model, error);
+  if (status == STATUS_OK) {
+    status = copy_planes(&from->contact, s->model, error);
+  }
+  if (status != STATUS_OK) {
+    return status;
+  }
+  model_add_gravity(s->model, s->gravity);
+  s->vector = malloc(2 * sizeof *s->vector * ((size_t)s->model->dof_count + 1));
+  if (!s->vector || state_create(s->model, &s->state) != STATUS_OK) {
+    return STATUS_NO_MEMORY;
+  }
+  status = equilibrium_create(s->model, &s->solver, error);
+  if (status == STATUS_OK) {
+    s->length = 4 * s->solver->options.longest_step;
+    s->solver->options.step_tolerance = step_tolerance * s->length;
+  }
+  return status;
+}
+
+enum status sensitivity_create(const struct fe_model *model, const double gravity[3],
+                               struct sensitivity **out, struct error *error) {
+  const struct mesh *mesh = model->mesh;
   size_t size = sizeof(double) * 3 * (size_t)mesh->node_count;
   struct sensitivity *s = calloc(1, sizeof *s);
   enum status status = STATUS_NO_MEMORY;
@@ -41,25 +76,12 @@ enum status sensitivity_create(const struct mesh *mesh, const struct material_sp
   }
   memcpy(s->mesh.x, mesh->x, size);
   memcpy(s->x, mesh->x, size);
-  status = model_create(&s->mesh, material, use_contact, &s->model, error);
-  if (status != STATUS_OK) {
-    goto done;
-  }
-  model_add_gravity(s->model, gravity);
   memcpy(s->gravity, gravity, sizeof s->gravity);
-  s->original = (struct variant){s->x, mesh->gap_width, mesh->wall_thickness, material};
-  s->stiffness = s->model->contact.stiffness;
-  s->smoothing = s->model->contact.smoothing;
+  s->original = (struct variant){s->x, mesh->gap_width, mesh->wall_thickness, &model->material};
+  s->stiffness = model->contact.stiffness;
+  s->smoothing = model->contact.smoothing;
   s->cap = rigid_contact;
-  s->vector = malloc(2 * sizeof *s->vector * ((size_t)s->model->dof_count + 1));
-  status = s->vector ? state_create(s->model, &s->state) : STATUS_NO_MEMORY;
-  if (status == STATUS_OK) {
-    status = equilibrium_create(s->model, &s->solver, error);
-  }
-  if (status == STATUS_OK) {
-    s->length = 4 * s->solver->options.longest_step;
-    s->solver->options.step_tolerance = step_tolerance * s->length;
-  }
+  status = prepare_model(s, model, error);
 done:
   if (status == STATUS_NO_MEMORY) {
     error_set(error, status, NULL, "no memory for derivatives");
@@ -120,7 +142,7 @@ static enum status settle(struct sensitivity *s, const struct fe_state *state, b
     status = equilibrium_solve(s->solver, &s->load, s->load.pressure, &s->state, &iterations);
     before = rest;
     rest = imbalance(s);
-    if (rest > 0.5 * before) {
+    if (rest > 0.7 * before) {
       break;
     }
   }
@@ -215,7 +237,7 @@ static enum status renew_contact(struct sensitivity *s, const struct variant *v)
   struct contact *contact = &s->model->contact, fresh;
   const struct variant *o = &s->original;
   int surface = QUAD9_POINTS * contact->face_count;
-  if (!s->model->use_contact) {
+  if (!s->model->use_contact && contact->plane_count == 0) {
     return STATUS_OK;
   }
   enum status status = contact_init(&fresh, &s->mesh, &s->model->quad9, NULL);

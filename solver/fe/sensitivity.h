@@ -34,12 +34,11 @@ struct sensitivity {
   double *vector;              /* 2 x dof_count */
 };
 
-/* Prepares for states of the body that `mesh` and `material` describe, with a model of its own;
- * both must outlive the result, which the caller owns. STATUS_OK or the failures of
- * model_create. */
-enum status sensitivity_create(const struct mesh *mesh, const struct material_spec *material,
-                               bool use_contact, const double gravity[3], struct sensitivity **out,
-                               struct error *error);
+/* Prepares for states of `model`, with a model of its own that has the same mesh, material, contact
+ * and planes, under gravity (m/s2). The given one must outlive the result, which the caller owns.
+ * STATUS_OK or the failures of model_create. */
+enum status sensitivity_create(const struct fe_model *model, const double gravity[3],
+                               struct sensitivity **out, struct error *error);
 void sensitivity_destroy(struct sensitivity *s);
 
 /* Factorises the tangent at a converged state, having brought a copy of it (s->state) closer to

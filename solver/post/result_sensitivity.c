@@ -214,17 +214,17 @@ enum status result_sensitivity_add(struct result_sensitivity *r, const struct pa
 
 /* ---- creation ------------------------------------------------------------------------------ */
 
-enum status result_sensitivity_create(const struct job_spec *spec, const struct mesh *mesh,
+enum status result_sensitivity_create(const struct job_spec *spec, const struct fe_model *model,
                                       struct result_sensitivity **out, struct error *error) {
   struct result_sensitivity *r = calloc(1, sizeof *r);
-  const size_t nodes = (size_t)mesh->node_count, parameters = (size_t)spec->sensitivity.count;
+  const size_t nodes = (size_t)model->mesh->node_count,
+               parameters = (size_t)spec->sensitivity.count;
   *out = NULL;
   if (!r) {
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for derivatives");
   }
   r->spec = spec;
-  enum status status = sensitivity_create(mesh, &spec->material, spec->contact, spec->load.gravity,
-                                          &r->linear, error);
+  enum status status = sensitivity_create(model, spec->load.gravity, &r->linear, error);
   if (status != STATUS_OK) {
     goto done;
   }
@@ -239,8 +239,8 @@ enum status result_sensitivity_create(const struct job_spec *spec, const struct 
       r->variation && r->mass && r->gradient && r->residual && r->u && r->measured && r->state;
   status = enough ? STATUS_OK : STATUS_NO_MEMORY;
   for (size_t p = 0; status == STATUS_OK && p < parameters; p++) {
-    status = variation_create(spec, mesh, &r->linear->original, &spec->sensitivity.parameter[p],
-                              &r->variation[r->count++]);
+    status = variation_create(spec, model->mesh, &r->linear->original,
+                              &spec->sensitivity.parameter[p], &r->variation[r->count++]);
   }
   if (status == STATUS_OK) {
     mark_measured(r);

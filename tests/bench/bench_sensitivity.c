@@ -64,7 +64,7 @@ static enum status differentiate(const struct job_spec *spec, const struct body 
                                  struct cost *cost, struct error *error) {
   struct result_sensitivity *r;
   double start = clock_cpu_s();
-  enum status status = result_sensitivity_create(spec, &b->mesh, &r, error);
+  enum status status = result_sensitivity_create(spec, b->model, &r, error);
   cost->create = clock_cpu_s() - start;
   cost->state = INFINITY;
   struct path_point point = {

@@ -55,6 +55,9 @@ void case_open(struct pneunet_case *c, const struct job_spec *spec) {
   if (status == STATUS_OK) {
     status = model_create(&c->mesh, &spec->material, spec->contact, &c->model, &error);
   }
+  for (int k = 0; status == STATUS_OK && k < spec->plane_count; k++) {
+    status = model_add_plane(c->model, spec->plane[k].point, spec->plane[k].normal, &error);
+  }
   if (status == STATUS_OK) {
     status = equilibrium_create(c->model, &c->solver, &error);
   }

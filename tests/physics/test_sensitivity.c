@@ -11,7 +11,7 @@
 #include "tests/physics/pneunet_case.h"
 #include "tests/unit/suite.h"
 
-enum { EDITS_MAX = 24, KEYS = 9 };
+enum { EDITS_MAX = 24, KEYS = 9, SOLVES_MAX = 30 };
 
 static const char *const keys[KEYS] = {
     "bending_angle_deg", "chord_angle_deg",   "end_face_angle_deg",
@@ -22,8 +22,8 @@ static const char *const keys[KEYS] = {
 struct design {
   const char *name;
   const char *edits[EDITS_MAX][2];
-  int touching;        /* points that carry traction, at least */
-  const char *skip[6]; /* parameters that are not compared with differences */
+  int touching;         /* points that carry traction, at least */
+  const char *skip[10]; /* parameters that are not compared with differences */
 };
 
 /* Three chambers pressed against each other; a short wall, so that contact comes early. */
@@ -68,6 +68,21 @@ static const struct design slack = {
      {"/mesh",
       "{\"gap_wall\": 1, \"cavity\": 1, \"half_width\": 1, \"bottom\": 1, \"height\": 1}"}},
     0,
+    {"/actuator/width", "/actuator/side_wall", "/actuator/top_wall", "/actuator/height/base",
+     "/actuator/channel/height", "/material/mu/0"}};
+
+/* Two chambers that press the tip onto a floor. */
+static const struct design resting = {
+    "two chambers on a floor",
+    {{"/actuator/chambers", "[{\"config\": \"B\", \"count\": 2}]"},
+     {"/actuator/length", "\"18 mm\""},
+     {"/actuator/channel", NULL},
+     {"/material", "{\"model\": \"neo-hooke\", \"mu\": \"0.2 MPa\"}"},
+     {"/load", "{\"pressure\": {\"to\": \"25 kPa\", \"steps\": 2}}"},
+     {"/planes", "[{\"point\": [0, 0, \"-0.02 mm\"], \"normal\": [0.002, 0, 1]}]"},
+     {"/mesh",
+      "{\"gap_wall\": 1, \"cavity\": 1, \"half_width\": 1, \"bottom\": 1, \"height\": 1}"}},
+    2,
     {NULL}};
 
 /* Reads the design after one more change, unless its pointer is NULL. */
@@ -102,7 +117,7 @@ static json_t *find_derivatives(const struct design *design, struct pneunet_case
   case_open(c, &spec);
   case_follow(c);
   ck_assert_int_ge(contact_summarise(&c->model->contact).active, design->touching);
-  enum status status = result_sensitivity_create(&c->spec, &c->mesh, &r, &error);
+  enum status status = result_sensitivity_create(&c->spec, c->model, &r, &error);
   ck_assert_msg(status == STATUS_OK, "%s", error.message);
   struct path_point point = {.pressure = spec.load.pressure_to,
                              .dead = gravity_acts(&spec),
@@ -126,6 +141,18 @@ static double derivative(const json_t *entry, const char *key) {
 
 /* ---- differences ---- */
 
+/* Whether the last solve left tractions away from their multipliers. */
+static bool settles_slowly(struct pneunet_case *c) {
+  for (int i = 0; i < c->model->contact.point_count; i++) {
+    const struct contact_point *point = &c->model->contact.point[i];
+    if (point->valid &&
+        fabs(point->traction - point->lambda) > 2 * c->solver->options.traction_tolerance) {
+      return true;
+    }
+  }
+  return false;
+}
+
 /* The changed body under the same pressure, settled from the state of the unchanged one. */
 static void solve_anew(const struct job_spec *spec, const struct pneunet_case *from,
                        double out[KEYS]) {
@@ -138,7 +165,12 @@ static void solve_anew(const struct job_spec *spec, const struct pneunet_case *f
   c.solver->options.step_tolerance = 1e-12;
   c.solver->options.traction_tolerance = 1e-9 * spec->load.pressure_to;
   struct fe_load load = {spec->load.pressure_to, spec->load.pressure_to, gravity_acts(spec)};
-  enum status status = equilibrium_solve(c.solver, &load, load.pressure, &c.state, &iterations);
+  enum status status;
+  int solves = 0;
+  do { /* one solve ends after so many updates of the multipliers, settled or not */
+    c.solver->factor_fits = false;
+    status = equilibrium_solve(c.solver, &load, load.pressure, &c.state, &iterations);
+  } while (status == STATUS_OK && settles_slowly(&c) && ++solves < SOLVES_MAX);
   ck_assert_msg(status == STATUS_OK, "%s", status_word(status));
   shape_measure(&c.mesh, c.state.u, &shape);
   double degree = M_PI / 180, whole = c.mesh.half ? 2 : 1;
@@ -247,7 +279,8 @@ END_TEST
 /* Angles do not change when pressure and moduli grow by one factor, nor when all lengths do: the
  * sum of value times derivative over either group is zero. Prints and returns it relative to its
  * largest term. */
-static double balance(const json_t *block, const char *unit, double pressure_kPa, const char *key) {
+static double balance(const struct design *design, const json_t *block, const char *unit,
+                      double pressure_kPa, const char *key) {
   const json_t *entry, *pressure = json_object_get(block, "pressure");
   double sum = pressure_kPa * derivative(pressure, key), largest = fabs(sum);
   size_t index;
@@ -258,41 +291,49 @@ static double balance(const json_t *block, const char *unit, double pressure_kPa
       largest = fmax(largest, fabs(term));
     }
   }
-  printf("| scaling of all %s | three chambers, contact | 0 | %.2e | %.1e |\n", unit, sum,
+  printf("| scaling of all %s | %s | 0 | %.2e | %.1e |\n", unit, design->name, sum,
          fabs(sum) / largest);
   fflush(stdout);
   return fabs(sum) / largest;
+}
+
+/* The pressure needs no parameter: its derivative is the slope of the response. */
+static void compare_slopes(const struct design *design, const struct pneunet_case *c,
+                           const json_t *block) {
+  double side[2][KEYS], h = 2e-4 * c->spec.load.pressure_to;
+  for (int s = 0; s < 2; s++) {
+    struct job_spec spec = c->spec;
+    spec.load.pressure_to += s ? h : -h;
+    solve_anew(&spec, c, side[s]);
+  }
+  for (int i = 0; i < KEYS - 1; i++) {
+    double slope = (side[1][i] - side[0][i]) / (2e-3 * h);
+    double found = derivative(json_object_get(block, "pressure"), keys[i]);
+    printf("| d %s / d kPa | %s | %.8g | %.8g | - |\n", keys[i], design->name, slope, found);
+    ck_assert_double_eq_tol(found, slope, 5e-5 * fabs(slope) + 1e-7);
+  }
 }
 
 START_TEST(derivatives_with_contact_are_those_of_new_solutions) {
   struct pneunet_case c;
   json_t *block = find_derivatives(&touching, &c);
   compare_all(&touching, &c, block, 1e-5);
-  ck_assert_double_lt(balance(block, "MPa", 40, "bending_angle_deg"), 1e-6);
-  ck_assert_double_lt(balance(block, "MPa", 40, "end_face_angle_deg"), 1e-6);
-  ck_assert_double_lt(balance(block, "mm", 0, "bending_angle_deg"), 1e-6);
-  ck_assert_double_lt(balance(block, "mm", 0, "chord_angle_deg"), 1e-6);
+  compare_slopes(&touching, &c, block);
+  ck_assert_double_lt(balance(&touching, block, "MPa", 40, "bending_angle_deg"), 1e-6);
+  ck_assert_double_lt(balance(&touching, block, "MPa", 40, "end_face_angle_deg"), 1e-6);
+  ck_assert_double_lt(balance(&touching, block, "mm", 0, "bending_angle_deg"), 1e-6);
+  ck_assert_double_lt(balance(&touching, block, "mm", 0, "chord_angle_deg"), 1e-6);
   json_decref(block);
   case_close(&c);
 }
 END_TEST
 
-/* The pressure needs no parameter: its derivative is the slope of the response. */
-START_TEST(derivative_to_the_pressure_is_the_slope_of_the_response) {
+START_TEST(derivatives_on_a_plane_are_those_of_new_solutions) {
   struct pneunet_case c;
-  json_t *block = find_derivatives(&touching, &c);
-  double side[2][KEYS], h = 20;
-  for (int s = 0; s < 2; s++) {
-    struct job_spec spec = c.spec;
-    spec.load.pressure_to += s ? h : -h;
-    solve_anew(&spec, &c, side[s]);
-  }
-  for (int i = 0; i < KEYS - 1; i++) {
-    double slope = (side[1][i] - side[0][i]) / (2e-3 * h);
-    double found = derivative(json_object_get(block, "pressure"), keys[i]);
-    printf("| d %s / d kPa | three chambers, contact | %.8g | %.8g | - |\n", keys[i], slope, found);
-    ck_assert_double_eq_tol(found, slope, 1e-5 * fabs(slope) + 1e-9);
-  }
+  json_t *block = find_derivatives(&resting, &c);
+  compare_slopes(&resting, &c, block);
+  ck_assert_double_lt(balance(&resting, block, "MPa", 25, "bending_angle_deg"), 1e-4);
+  ck_assert_double_lt(balance(&resting, block, "MPa", 25, "cavity_volume_mm3"), 1e-5);
   json_decref(block);
   case_close(&c);
 }
@@ -346,7 +387,7 @@ int main(void) {
   tcase_set_timeout(derivatives, 120);
   tcase_add_test(derivatives, derivatives_without_contact_are_those_of_new_solutions);
   tcase_add_test(derivatives, derivatives_with_contact_are_those_of_new_solutions);
-  tcase_add_test(derivatives, derivative_to_the_pressure_is_the_slope_of_the_response);
+  tcase_add_test(derivatives, derivatives_on_a_plane_are_those_of_new_solutions);
   tcase_add_test(derivatives, half_a_body_gives_the_derivatives_of_the_whole);
   suite_add_tcase(suite, derivatives);
   return suite_run(suite);
