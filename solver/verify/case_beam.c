@@ -267,9 +267,8 @@ static enum status roll(struct verify_run *run, struct couple *c, double moment,
       }
     }
     status = correction >= 0 && correction <= 1e-10 ? STATUS_OK : STATUS_DIVERGED;
-    if (status == STATUS_OK && run->control.cancelled &&
-        run->control.cancelled(run->control.cancel_context)) {
-      status = STATUS_CANCELLED;
+    if (status == STATUS_OK) {
+      status = newton_check_limits(&run->control);
     }
     *angle = end_turn(c, *angle + 2 * M_PI / ROLL_STEPS);
     verify_point(run, share, *angle * 180 / M_PI, 360 * share);

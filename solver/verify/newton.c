@@ -18,16 +18,21 @@ static double add_step(struct fe_model *m, struct fe_state *state, const double 
   return most;
 }
 
-/* Evaluates and factorises at the state, unless it is time to stop. */
-static enum status linearise(struct fe_model *m, const struct fe_load *load,
-                             const struct fe_state *state, const struct newton_control *control) {
+enum status newton_check_limits(const struct newton_control *control) {
   if (control->cancelled && control->cancelled(control->cancel_context)) {
     return STATUS_CANCELLED;
   }
-  if (control->deadline_s > 0 && clock_wall_s() > control->deadline_s) {
-    return STATUS_TIMEOUT;
+  bool late = control->deadline_s > 0 && clock_wall_s() > control->deadline_s;
+  return late ? STATUS_TIMEOUT : STATUS_OK;
+}
+
+/* Evaluates and factorises at the state, unless it is time to stop. */
+static enum status linearise(struct fe_model *m, const struct fe_load *load,
+                             const struct fe_state *state, const struct newton_control *control) {
+  enum status status = newton_check_limits(control);
+  if (status == STATUS_OK) {
+    status = model_evaluate(m, state, load, true);
   }
-  enum status status = model_evaluate(m, state, load, true);
   if (status == STATUS_OK) {
     model_factor(m);
     m->statistics.newton_iterations++;

@@ -19,6 +19,9 @@ struct newton_control {
   struct newton_log *log; /* may be NULL */
 };
 
+/* STATUS_OK, or CANCELLED or TIMEOUT when it is time to stop. */
+enum status newton_check_limits(const struct newton_control *control);
+
 /* Each brings the state into equilibrium. STATUS_OK, or INVERTED, DIVERGED, TIMEOUT, CANCELLED or
  * NO_MEMORY; the state is then the last iterate. */
 

@@ -10,7 +10,7 @@ rank() {
   solver/mesh/*) echo 3 ;;
   solver/fe/* | solver/hlpv/*) echo 4 ;;
   solver/post/* | solver/verify/*) echo 5 ;;
-  solver/run.[ch] | solver/main.c) echo 6 ;;
+  solver/run.[ch] | solver/main.c | solver/solve.[ch] | solver/estimate.[ch]) echo 6 ;;
   server/*) echo 7 ;;
   *) echo 0 ;;
   esac
