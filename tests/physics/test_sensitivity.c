@@ -272,7 +272,7 @@ static void compare_all(const struct design *design, const struct pneunet_case *
 START_TEST(derivatives_without_contact_are_those_of_new_solutions) {
   struct pneunet_case c;
   json_t *block = find_derivatives(&slack, &c);
-  compare_all(&slack, &c, block, 1e-5);
+  compare_all(&slack, &c, block, 1e-4);
   json_decref(block);
   case_close(&c);
 }
@@ -319,7 +319,7 @@ static void compare_slopes(const struct design *design, const struct pneunet_cas
 START_TEST(derivatives_with_contact_are_those_of_new_solutions) {
   struct pneunet_case c;
   json_t *block = find_derivatives(&touching, &c);
-  compare_all(&touching, &c, block, 1e-5);
+  compare_all(&touching, &c, block, 1e-4);
   compare_slopes(&touching, &c, block);
   ck_assert_double_lt(balance(&touching, block, "MPa", 40, "bending_angle_deg"), 1e-6);
   ck_assert_double_lt(balance(&touching, block, "MPa", 40, "end_face_angle_deg"), 1e-6);
