@@ -92,19 +92,29 @@ static const struct {
 };
 enum { PRINTED = sizeof printed / sizeof *printed };
 
+static const char *const printed_cases[] = {"thick-cylinder-neo-hooke", "thick-sphere-neo-hooke",
+                                            "elastica", "treloar-uniaxial", "treloar-equibiaxial"};
+enum { PRINTED_CASES = sizeof printed_cases / sizeof *printed_cases };
+
 START_TEST(references_are_the_printed_ones) {
   enum status ending;
-  json_t *document = run_case(printed[_i].name, 1, 0, &ending), *sample;
+  json_t *document = run_case(printed_cases[_i], 1, 0, &ending), *sample;
   size_t index;
-  bool found = false;
-  json_array_foreach(json_object_get(document, "samples"), index, sample) {
-    if (fabs(json_number_value(json_object_get(sample, printed[_i].key)) - printed[_i].x) < 1e-9) {
-      ck_assert_double_eq_tol(json_number_value(json_object_get(sample, "reference")),
-                              printed[_i].reference, printed[_i].tolerance);
-      found = true;
+  int checked = 0;
+  for (int k = 0; k < PRINTED; k++) {
+    if (strcmp(printed[k].name, printed_cases[_i]) != 0) {
+      continue;
+    }
+    json_array_foreach(json_object_get(document, "samples"), index, sample) {
+      double x = json_number_value(json_object_get(sample, printed[k].key));
+      if (fabs(x - printed[k].x) < 1e-9) {
+        ck_assert_double_eq_tol(json_number_value(json_object_get(sample, "reference")),
+                                printed[k].reference, printed[k].tolerance);
+        checked++;
+      }
     }
   }
-  ck_assert_msg(found, "%s has no point at %g", printed[_i].name, printed[_i].x);
+  ck_assert_int_eq(checked, _i < 2 ? 4 : _i == 2 ? 2 : 1);
   json_decref(document);
 }
 END_TEST
@@ -182,7 +192,7 @@ int main(void) {
   tcase_set_timeout(verify, 120);
   tcase_add_loop_test(verify, error_is_below_its_bound, 0, count);
   tcase_add_loop_test(verify, finer_meshes_err_less, 0, 6);
-  tcase_add_loop_test(verify, references_are_the_printed_ones, 0, PRINTED);
+  tcase_add_loop_test(verify, references_are_the_printed_ones, 0, PRINTED_CASES);
   tcase_add_test(verify, schema_names_every_case);
   tcase_add_test(verify, every_case_has_its_job);
   tcase_add_test(verify, time_limit_gives_a_result);
