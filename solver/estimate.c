@@ -33,7 +33,7 @@ enum status estimate_finer(const struct job_spec *spec, const struct solve *coar
                            struct sample *finer, struct error *error) {
   struct solve fine = {0};
   struct pneunet_cells cells = pneunet_resolution(spec);
-  pneunet_refine(&cells);
+  pneunet_refine(spec, &cells);
   enum status status = pneunet_mesh_cells(spec, &cells, &fine.mesh, error);
   if (status == STATUS_OK) {
     status = solve_prepare(spec, &fine, error);

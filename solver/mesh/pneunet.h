@@ -18,8 +18,9 @@ struct pneunet_cells {
 /* Cells as chosen by the job (equal ones) or, where it is silent, by its accuracy tier. */
 struct pneunet_cells pneunet_resolution(const struct job_spec *spec);
 
-/* Splits cells for a finer mesh that tells the error of the one they make. */
-void pneunet_refine(struct pneunet_cells *cells);
+/* Splits the cells of a job for a finer mesh that tells the error of the one they make: where
+ * measurement finds most of it, in the plane of bending next to the axial walls. */
+void pneunet_refine(const struct job_spec *spec, struct pneunet_cells *cells);
 
 /* As pneunet_mesh, with cells of the caller's choice. */
 enum status pneunet_mesh_cells(const struct job_spec *spec, const struct pneunet_cells *cells,

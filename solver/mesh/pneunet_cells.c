@@ -5,7 +5,7 @@
 /* The rule of an accuracy tier, found by measurement on bodies of many proportions
  * (tests/bench/bench_error.c). First and last cells of other lengths grade the mesh towards the
  * inner corners, where the stress is singular: the root of the walls above all. Graded so, one
- * cell through an axial wall is enough unless the cavity is squat. */
+ * cell through an axial wall is enough unless the wall is stocky or shared by two cavities. */
 struct tier {
   struct pneunet_cells cells;
   double cavity, half_width; /* longest cell relative to the height of the cavity */
@@ -13,6 +13,8 @@ struct tier {
 
 /* A cavity longer than this part of its height has stiff axial walls, which need more cells. */
 static const double squat_ratio = 0.75;
+/* So have walls thicker than this part of the cavity's length. */
+static const double thick_ratio = 0.4;
 
 /* What the tiers have in common; where a feature has one cell, its length changes little. */
 #define PLAIN_CELLS                                                                                \
@@ -64,6 +66,15 @@ static double cavity_height(const struct pneunet_spec *p) {
   return p->height_base - p->top_wall - floor;
 }
 
+/* Whether a wall separates two cavities: one between neighbours of configuration A. */
+static bool has_joint(const struct pneunet_spec *p) {
+  int run = 0;
+  while (run < p->run_count && (p->runs[run].config != CHAMBER_A || p->runs[run].count < 2)) {
+    run++;
+  }
+  return run < p->run_count;
+}
+
 /* A number given by the job makes equal cells. */
 static void choose(int given, struct grid_division *division) {
   if (given > 0) {
@@ -89,6 +100,9 @@ struct pneunet_cells pneunet_resolution(const struct job_spec *spec) {
   if (p->cavity_length > squat_ratio * height) {
     cells.gap_wall.cells++;
     cells.height.cells++;
+  } else if (spec->accuracy == ACCURACY_STANDARD &&
+             (p->gap_wall > thick_ratio * p->cavity_length || has_joint(p))) {
+    cells.gap_wall.cells++;
   }
   choose(spec->mesh.gap_wall, &cells.gap_wall);
   choose(spec->mesh.cavity, &cells.cavity);
@@ -101,7 +115,9 @@ struct pneunet_cells pneunet_resolution(const struct job_spec *spec) {
   return cells;
 }
 
-void pneunet_refine(struct pneunet_cells *cells) {
-  cells->gap_wall.split = 2;
+void pneunet_refine(const struct job_spec *spec, struct pneunet_cells *cells) {
   cells->height.split = 2;
+  if (spec->accuracy != ACCURACY_FINE) { /* whose walls have two cells: memory goes first */
+    cells->gap_wall.split = 2;
+  }
 }

@@ -27,6 +27,14 @@ void case_prototype(struct job_spec *spec, int chambers) {
   p->channel_cover = 0.0015;
   spec->half_model = true;
   spec->accuracy = ACCURACY_STANDARD;
+  spec->mesh = (struct mesh_spec){.gap_wall = 2,
+                                  .cavity = 1,
+                                  .gap = 1,
+                                  .half_width = 1,
+                                  .side_wall = 1,
+                                  .bottom = 1,
+                                  .height = 3,
+                                  .top = 1};
   spec->material = (struct material_spec){.model = MATERIAL_YEOH,
                                           .terms = 3,
                                           .c = {0.25e6, -0.05e6, 0.005e6},

@@ -20,7 +20,8 @@ struct pneunet_case {
 };
 
 /* Fills the spec of the reference body: 20 mm high, 30 mm wide, tapered sideways by 2 degrees,
- * bottom layer 6 mm, half model, standard accuracy, no contact, 50 kPa in ten steps. */
+ * bottom layer 6 mm, half model, no contact, 50 kPa in ten steps. The mesh is that of the method's
+ * first prototype; an empty spec->mesh leaves it to the accuracy, standard. */
 void case_prototype(struct job_spec *spec, int chambers);
 
 /* Sets `n` elements through every feature of 2 mm and in proportion elsewhere. */

@@ -369,6 +369,7 @@ START_TEST(every_tier_chooses_at_least_one) {
   for (int tier = ACCURACY_FAST; tier <= ACCURACY_FINE; tier++) {
     struct mesh mesh;
     spec.accuracy = (enum accuracy)tier;
+    spec.mesh = (struct mesh_spec){0};
     struct pneunet_cells n = pneunet_resolution(&spec);
     const struct grid_division *all[] = {&n.gap_wall, &n.cavity,     &n.gap,       &n.channel,
                                          &n.stem,     &n.half_width, &n.side_wall, &n.bottom,
