@@ -14,6 +14,9 @@ static const double xi_keep_facing = 1.25;
 /* Faces met by bending: a little beyond the edge, so that no point falls between two faces. */
 static const double xi_keep = 1.05;
 static const double xi_take = 1.02;
+/* A list of pairs must hold the points nearer than need_share of the reach; one that has to be made
+ * anew takes those up to list_share, so that it lasts. */
+static const double need_share = 0.1, list_share = 0.4;
 /* Faces whose outward normals make a smaller angle than some 75 degrees look the same way. */
 static const double same_direction = 0.25;
 
@@ -30,6 +33,7 @@ struct contact_search_data {
   struct box *box;   /* per face */
   int *partner;      /* per surface point: master face or -1 */
   double *xi;        /* per surface point: 2 */
+  double *gap;       /* per surface point, m */
   int *first;        /* per face + 1: pairs beyond those of the gaps, ordered by slave */
   double intrusion;
 };
@@ -43,6 +47,7 @@ void contact_search_release(struct contact_search_data *d) {
   free(d->box);
   free(d->partner);
   free(d->xi);
+  free(d->gap);
   free(d->first);
   free(d);
 }
@@ -82,8 +87,9 @@ static struct contact_search_data *search_create(const struct contact *c) {
   d->box = malloc(sizeof *d->box * faces);
   d->partner = malloc(sizeof *d->partner * QUAD9_POINTS * faces);
   d->xi = malloc(sizeof *d->xi * 2 * QUAD9_POINTS * faces);
+  d->gap = malloc(sizeof *d->gap * QUAD9_POINTS * faces);
   d->first = calloc(faces + 1, sizeof *d->first);
-  if (!d->rest || !d->view || !d->box || !d->partner || !d->xi || !d->first) {
+  if (!d->rest || !d->view || !d->box || !d->partner || !d->xi || !d->gap || !d->first) {
     contact_search_release(d);
     return NULL;
   }
@@ -190,6 +196,7 @@ static bool keep_partner(const struct contact *c, int i) {
   double limit = facing ? xi_keep_facing : xi_keep;
   d->partner[i] = c->pair[point->pair].master;
   memcpy(d->xi + 2 * i, point->xi, sizeof point->xi);
+  d->gap[i] = point->gap;
   return fabs(point->xi[0]) < limit && fabs(point->xi[1]) < limit &&
          (facing || fabs(point->gap) < c->reach);
 }
@@ -203,6 +210,7 @@ static void choose_partner(const struct contact *c, int i, const int *list, int 
   point_position(c, face, i % QUAD9_POINTS, x);
   d->partner[i] = c->face[face].role > 0 ? c->pair[face].master : -1;
   memcpy(d->xi + 2 * i, c->point[i].xi, 2 * sizeof *d->xi);
+  d->gap[i] = INFINITY;
   for (int k = 0; k < count; k++) {
     struct box reach = box_inflate(&d->view[list[k]].box, best);
     struct box here = {{x[0], x[1], x[2]}, {x[0], x[1], x[2]}};
@@ -213,6 +221,7 @@ static void choose_partner(const struct contact *c, int i, const int *list, int 
     double gap = gap_to(c, list[k], x, xi_take, xi);
     if (fabs(gap) < best) {
       best = fabs(gap);
+      d->gap[i] = gap;
       d->partner[i] = list[k];
       memcpy(d->xi + 2 * i, xi, sizeof xi);
       d->intrusion = fmax(d->intrusion, -gap);
@@ -261,16 +270,21 @@ static bool add_pair(struct contact *c, int slave, int master) {
   return true;
 }
 
-/* Makes the list of pairs anew from the partners. */
+/* Whether point i has a partner nearer than `share` of the reach, or presses on one. */
+static bool near_partner(const struct contact *c, int i, double share) {
+  const struct contact_search_data *d = c->search;
+  return d->partner[i] >= 0 && (d->gap[i] < share * c->reach || c->point[i].lambda > 0);
+}
+
+/* Makes the list of pairs anew from the partners: those that are near by now. */
 static bool list_pairs(struct contact *c) {
   struct contact_search_data *d = c->search;
   c->pair_count = c->mesh->facing_count;
   for (int f = 0; f < c->face_count; f++) {
     d->first[f] = d->first[f + 1] = c->pair_count;
-    for (int q = 0; q < QUAD9_POINTS; q++) {
-      int master = d->partner[QUAD9_POINTS * f + q];
-      if (master >= 0 && pair_index(c, f, master) < 0) {
-        if (!add_pair(c, f, master)) {
+    for (int i = QUAD9_POINTS * f; i < QUAD9_POINTS * (f + 1); i++) {
+      if (near_partner(c, i, list_share) && pair_index(c, f, d->partner[i]) < 0) {
+        if (!add_pair(c, f, d->partner[i])) {
           return false;
         }
         d->first[f + 1] = c->pair_count;
@@ -280,7 +294,7 @@ static bool list_pairs(struct contact *c) {
   return true;
 }
 
-/* Every point takes over its partner. */
+/* Every point takes over its partner, if they are a listed pair. */
 static void assign_points(struct contact *c) {
   struct contact_search_data *d = c->search;
   for (int i = 0; i < QUAD9_POINTS * c->face_count; i++) {
@@ -294,10 +308,11 @@ static void assign_points(struct contact *c) {
   }
 }
 
+/* Whether all points that are about to touch have their pair in the list. */
 static bool pairs_listed(const struct contact *c) {
   const struct contact_search_data *d = c->search;
   for (int i = 0; i < QUAD9_POINTS * c->face_count; i++) {
-    if (d->partner[i] >= 0 && pair_index(c, i / QUAD9_POINTS, d->partner[i]) < 0) {
+    if (near_partner(c, i, need_share) && pair_index(c, i / QUAD9_POINTS, d->partner[i]) < 0) {
       return false;
     }
   }

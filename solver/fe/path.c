@@ -2,11 +2,15 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 /* Step control. */
 static const double cut_factor = 0.4;
 static const double grow_factor = 2;
+/* Foreseen at the first step: movement in longest steps, overlap in widths of the gap. */
+static const double foreseen = 0.8, closing = 0.3;
 enum {
+  HALVINGS = 6,
   EASY_ITERATIONS = 6,
   SMALLEST_PART = 60 /* of the load: below that, arc length */
 };
@@ -94,11 +98,46 @@ static bool folded(struct walk *w) {
   return w->solver->model->use_contact && contact_folded(&w->solver->model->contact);
 }
 
+/* Largest first step that the tangent at the start foresees as harmless: the body moves by a small
+ * part of its length and its gaps do not close by far. The factor serves the step itself too. */
+static enum status foresee(struct walk *w, const struct stage *stage) {
+  struct equilibrium *solver = w->solver;
+  const struct fe_model *m = solver->model;
+  struct fe_load load = walk_load(w, stage, 0);
+  double *direction = calloc((size_t)m->dof_count + 1, sizeof *direction);
+  enum status status = direction
+                           ? equilibrium_tangent(solver, &load, stage->dead, w->state, direction)
+                           : STATUS_NO_MEMORY;
+  for (int k = 0; status == STATUS_OK && k < HALVINGS; k++) {
+    double most = 0;
+    state_copy(m, &w->trial, w->state);
+    for (int d = 0; d < 3 * m->mesh->node_count; d++) {
+      double move = m->equation[d] >= 0 ? w->step * direction[m->equation[d]] : 0;
+      w->trial.u[d] += move;
+      most = fmax(most, fabs(move));
+    }
+    model_update_gaps(solver->model, &w->trial);
+    double gap = contact_summarise(&m->contact).min_gap;
+    bool closes = m->use_contact && gap < -closing * m->mesh->gap_width;
+    if (most < foreseen * solver->options.longest_step && !closes) {
+      break;
+    }
+    w->step *= 0.5;
+  }
+  solver->factor_fits = status == STATUS_OK;
+  free(direction);
+  return walk_final(status) ? status : STATUS_OK;
+}
+
 static enum status walk_stage(struct walk *w, const struct stage *stage) {
   w->value = 0;
   w->step = stage->full;
+  enum status status = foresee(w, stage);
+  if (status != STATUS_OK) {
+    return status;
+  }
   for (int record = 1; record <= stage->records; record++) {
-    enum status status = reach(w, stage, stage->end * record / stage->records);
+    status = reach(w, stage, stage->end * record / stage->records);
     if (status == STATUS_DIVERGED) {
       return folded(w) ? STATUS_CONTACT : STATUS_STEP_MINIMUM;
     }
