@@ -16,10 +16,17 @@ struct section {
 struct retraction {
   const struct mesh *mesh;
   struct section *section;
-  int *core_count; /* core nodes per section */
-  double *inertia; /* 9 per section */
-  double *moment;  /* 3 per section */
+  double *weight;      /* per node: 0 outside the core */
+  double *core_weight; /* sum over the core nodes of a section */
+  double *inertia;     /* 9 per section */
+  double *moment;      /* 3 per section */
 };
+
+/* Nodes of the plane of symmetry stand for themselves, the others for their mirror images too. */
+static double core_weight(const struct mesh *mesh, int n) {
+  bool on_plane = mesh->half && mesh->x[3 * n + 1] == 0;
+  return !mesh->node_core[n] ? 0 : on_plane ? 0.5 : 1;
+}
 
 struct retraction *retraction_create(const struct mesh *mesh) {
   struct retraction *r = calloc(1, sizeof *r);
@@ -29,15 +36,17 @@ struct retraction *retraction_create(const struct mesh *mesh) {
   size_t sections = (size_t)mesh->section_count + 1;
   r->mesh = mesh;
   r->section = calloc(sections, sizeof *r->section);
-  r->core_count = calloc(sections, sizeof *r->core_count);
+  r->weight = calloc((size_t)mesh->node_count + 1, sizeof *r->weight);
+  r->core_weight = calloc(sections, sizeof *r->core_weight);
   r->inertia = calloc(9 * sections, sizeof *r->inertia);
   r->moment = calloc(3 * sections, sizeof *r->moment);
-  if (!r->section || !r->core_count || !r->inertia || !r->moment) {
+  if (!r->section || !r->weight || !r->core_weight || !r->inertia || !r->moment) {
     retraction_destroy(r);
     return NULL;
   }
   for (int n = 0; mesh->section_count > 0 && n < mesh->node_count; n++) {
-    r->core_count[mesh->node_section[n]] += mesh->node_core[n];
+    r->weight[n] = core_weight(mesh, n);
+    r->core_weight[mesh->node_section[n]] += r->weight[n];
   }
   return r;
 }
@@ -47,7 +56,8 @@ void retraction_destroy(struct retraction *r) {
     return;
   }
   free(r->section);
-  free(r->core_count);
+  free(r->weight);
+  free(r->core_weight);
   free(r->inertia);
   free(r->moment);
   free(r);
@@ -69,7 +79,7 @@ static void find_centres(struct retraction *r, const double *u, const double *in
       continue;
     }
     struct section *s = &r->section[mesh->node_section[n]];
-    double x[3], share = 1.0 / r->core_count[mesh->node_section[n]];
+    double x[3], share = r->weight[n] / r->core_weight[mesh->node_section[n]];
     current_position(mesh, u, n, x);
     for (int i = 0; i < 3; i++) {
       if (i != 1 || !mesh->half) {
@@ -113,11 +123,11 @@ static void find_spins(struct retraction *r, const double *u, const double *incr
       arm[1] = d[1] = 0;
     }
     vec3_cross(arm, d, turn);
-    double square = vec3_dot(arm, arm);
+    double square = vec3_dot(arm, arm), weight = r->weight[n];
     for (int i = 0; i < 3; i++) {
-      r->moment[3 * k + i] += turn[i];
+      r->moment[3 * k + i] += weight * turn[i];
       for (int j = 0; j < 3; j++) {
-        r->inertia[9 * k + 3 * i + j] += (i == j ? square : 0) - arm[i] * arm[j];
+        r->inertia[9 * k + 3 * i + j] += weight * ((i == j ? square : 0) - arm[i] * arm[j]);
       }
     }
   }
@@ -221,11 +231,11 @@ void retraction_frame(const struct retraction *r, const double *u, int section, 
                       double c[3]) {
   const struct mesh *mesh = r->mesh;
   double centre[3] = {0}, reference[3] = {0};
-  int count = r->core_count[section];
+  double whole = r->core_weight[section];
   for (int n = 0; n < mesh->node_count; n++) {
     for (int i = 0; mesh->node_core[n] && mesh->node_section[n] == section && i < 3; i++) {
-      reference[i] += mesh->x[3 * n + i] / count;
-      centre[i] += (mesh->x[3 * n + i] + u[3 * n + i]) / count;
+      reference[i] += r->weight[n] * mesh->x[3 * n + i] / whole;
+      centre[i] += r->weight[n] * (mesh->x[3 * n + i] + u[3 * n + i]) / whole;
     }
   }
   double across[2][3] = {{0}}, moved[2][3] = {{0}}; /* first moments along y and z */
@@ -234,7 +244,7 @@ void retraction_frame(const struct retraction *r, const double *u, int section, 
       continue;
     }
     for (int k = 0; k < 2; k++) {
-      double weight = mesh->x[3 * n + 1 + k] - reference[1 + k];
+      double weight = r->weight[n] * (mesh->x[3 * n + 1 + k] - reference[1 + k]);
       for (int i = 0; i < 3; i++) {
         across[k][i] += weight * (mesh->x[3 * n + i] - reference[i]);
         moved[k][i] += weight * (mesh->x[3 * n + i] + u[3 * n + i] - centre[i]);
