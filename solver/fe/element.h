@@ -16,11 +16,13 @@ enum {
   ELEMENT_PACKED = ELEMENT_DOFS * (ELEMENT_DOFS + 1) / 2 /* upper triangle by rows */
 };
 
-/* Reference geometry at the Gauss points. */
+/* Reference geometry at the Gauss points; rows over the points are padded with zeros. */
 struct element_geometry {
-  double gradient[HEX27_POINTS][3][HEX27_STRIDE]; /* dN_a/dX_J, 1/m */
-  double weight[HEX27_POINTS];                    /* m3 */
-  double phi[HEX27_POINTS][ELEMENT_PRESSURES];    /* pressure basis */
+  const struct hex27_tables *tables;                       /* those it was filled with */
+  double weight[HEX27_STRIDE];                             /* m3 */
+  double phi[ELEMENT_PRESSURES][HEX27_STRIDE];             /* pressure basis */
+  double inverse[9][HEX27_STRIDE];                         /* d xi_d / d X_J, index 3 d + J, 1/m */
+  double projection[ELEMENT_PRESSURES][ELEMENT_PRESSURES]; /* (int phi_m phi_n dV)^-1, 1/m3 */
 };
 
 /* What the recovery of the pressures needs from the last evaluation. */
@@ -30,14 +32,8 @@ struct element_internal {
   double residual[ELEMENT_PRESSURES];                   /* r_m */
 };
 
-/* Scratch of element_evaluate, reused from element to element. */
-struct element_work {
-  double transformed[3][3 * HEX27_POINTS][3 * HEX27_NODES];
-  double stiffness[3][HEX27_NODES][3 * HEX27_NODES];
-};
-
 /* Fills the geometry from the nodes x[27][3] (m). Returns the volume in m3, or a value <= 0
- * when the map is not invertible at a Gauss point. */
+ * when the map is not invertible at a Gauss point. The tables must outlive the geometry. */
 double element_geometry_fill(const struct hex27_tables *tables, double x[HEX27_NODES][3],
                              struct element_geometry *geometry);
 
@@ -48,9 +44,8 @@ double element_geometry_fill(const struct hex27_tables *tables, double x[HEX27_N
  * Returns false when det F <= 0.02 at a Gauss point: nothing is then valid. */
 bool element_evaluate(const struct element_geometry *geometry, const struct material_spec *material,
                       double bulk_modulus, double u[3][HEX27_STRIDE],
-                      const double p[ELEMENT_PRESSURES], struct element_work *work,
-                      double residual[ELEMENT_DOFS], double *packed,
-                      struct element_internal *internal);
+                      const double p[ELEMENT_PRESSURES], double residual[ELEMENT_DOFS],
+                      double *packed, struct element_internal *internal);
 
 /* Change of the pressures that belongs to the displacement step du[81]:
  * dp = -(dr/dp)^-1 (r + dr/du du). `share` scales r (1 for a full Newton step). */

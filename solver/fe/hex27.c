@@ -1,6 +1,7 @@
 #include "solver/fe/hex27.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Quadratic Lagrange functions on the nodes -1, 0, 1 with derivatives. */
 static void lagrange2(double x, double n[3], double d[3]) {
@@ -60,6 +61,7 @@ static void gauss3(double x[3], double w[3]) {
 void hex27_tables_fill(struct hex27_tables *tables) {
   double x[3], w[3], n[HEX27_NODES];
   gauss3(x, w);
+  memset(tables, 0, sizeof *tables);
   for (int q = 0; q < HEX27_POINTS; q++) {
     int i[3] = {q / 9, q / 3 % 3, q % 3};
     tables->weight[q] = w[i[0]] * w[i[1]] * w[i[2]];
@@ -67,6 +69,10 @@ void hex27_tables_fill(struct hex27_tables *tables) {
       tables->point[q][d] = x[i[d]];
     }
     hex27_shape(tables->point[q], n, tables->dn[q]);
+    for (int m = 0; m < 3 * HEX27_NODES; m++) {
+      int d = m / HEX27_NODES, a = m % HEX27_NODES;
+      tables->by_point[q][d][a] = tables->by_node[a][d][q] = tables->dn[q][d][a];
+    }
   }
 }
 

@@ -7,14 +7,18 @@
 
 enum {
   HEX27_POINTS = 27, /* 3 x 3 x 3 Gauss points */
-  HEX27_STRIDE = 32, /* row length of arrays over nodes, padded with zeros for the vector units */
-  QUAD9_POINTS = 9   /* 3 x 3 Gauss points */
+  HEX27_STRIDE =
+      32, /* row length of arrays over nodes or points, padded with zeros for the vector units */
+  QUAD9_POINTS = 9 /* 3 x 3 Gauss points */
 };
 
 struct hex27_tables {
   double point[HEX27_POINTS][3];
   double weight[HEX27_POINTS];
   double dn[HEX27_POINTS][3][HEX27_NODES]; /* d N_a / d xi_d at the Gauss points */
+  /* The same, padded with zeros. */
+  double by_point[HEX27_POINTS][3][HEX27_STRIDE]; /* point, direction, node */
+  double by_node[HEX27_NODES][3][HEX27_STRIDE];   /* node, direction, point */
 };
 
 struct quad9_tables {

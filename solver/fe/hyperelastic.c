@@ -3,112 +3,17 @@
 #include <math.h>
 #include <string.h>
 
+#define REAL double
+#define LAW(name) scalar_##name
+#include "solver/fe/hyperelastic_law.h"
+
 double kinematics_complete(struct kinematics *k) {
-  const double *f = k->f;
-  double *g = k->cofactor;
-  g[0] = f[4] * f[8] - f[5] * f[7];
-  g[1] = f[5] * f[6] - f[3] * f[8];
-  g[2] = f[3] * f[7] - f[4] * f[6];
-  g[3] = f[2] * f[7] - f[1] * f[8];
-  g[4] = f[0] * f[8] - f[2] * f[6];
-  g[5] = f[1] * f[6] - f[0] * f[7];
-  g[6] = f[1] * f[5] - f[2] * f[4];
-  g[7] = f[2] * f[3] - f[0] * f[5];
-  g[8] = f[0] * f[4] - f[1] * f[3];
-  k->j = f[0] * g[0] + f[1] * g[1] + f[2] * g[2];
-  for (int i = 0; i < 9; i++) {
-    g[i] /= k->j;
-  }
+  struct scalar_point x;
+  memcpy(x.f, k->f, sizeof x.f);
+  scalar_invert(&x);
+  memcpy(k->cofactor, x.g, sizeof x.g);
+  k->j = x.j;
   return k->j;
-}
-
-/* Adds w1 H + w2 s (x) s, with s = dI1b/dF and H = d2 I1b/dF2, I1b = J^(-2/3) F:F:
- *   s = 2 c F - 2/3 I1b G,   G = F^-T, c = J^(-2/3)
- *   H = 2 c d_ik d_JL - 4/3 c F_iJ G_kL - 2/3 G_iJ s_kL + 2/3 I1b G_kJ G_iL */
-static void add_first_invariant(double w1, double w2, double c, double i1, const double *f,
-                                const double *g, const double s[9], double *tangent) {
-  double h = w1 * 2 / 3 * i1;
-  for (int i = 0; i < 3; i++) {
-    for (int j = 0; j < 3; j++) {
-      double *row = tangent + 9 * (3 * i + j);
-      double fs = w2 * s[3 * i + j] - w1 * 2 / 3 * g[3 * i + j];
-      double fg = w1 * 4 / 3 * c * f[3 * i + j];
-      for (int k = 0; k < 3; k++) {
-        for (int l = 0; l < 3; l++) {
-          row[3 * k + l] += fs * s[3 * k + l] - fg * g[3 * k + l] + h * g[3 * k + j] * g[3 * i + l];
-        }
-      }
-      row[3 * i + j] += w1 * 2 * c;
-    }
-  }
-}
-
-static double invariant_law(const struct kinematics *k, const double *coefficient, int terms,
-                            double stress[9], double *tangent) {
-  double c = 1 / cbrt(k->j * k->j), i1 = 0;
-  for (int i = 0; i < 9; i++) {
-    i1 += k->f[i] * k->f[i];
-  }
-  i1 *= c;
-  double x = i1 - 3, c1 = coefficient[0], c2 = terms > 1 ? coefficient[1] : 0,
-         c3 = terms > 2 ? coefficient[2] : 0;
-  double w1 = c1 + x * (2 * c2 + 3 * c3 * x), w2 = 2 * c2 + 6 * c3 * x;
-  double s[9];
-  for (int i = 0; i < 9; i++) {
-    s[i] = 2 * c * k->f[i] - 2.0 / 3 * i1 * k->cofactor[i];
-    stress[i] = w1 * s[i];
-  }
-  if (tangent) {
-    memset(tangent, 0, 81 * sizeof *tangent);
-    add_first_invariant(w1, w2, c, i1, k->f, k->cofactor, s, tangent);
-  }
-  return x * (c1 + x * (c2 + x * c3));
-}
-
-/* Adds stress and tangent of w (I2b - 3), I2b = J^(-4/3) I2, I2 = (I1^2 - tr C^2)/2:
- *   M = dI2/dF = 2 (I1 F - F C),   s = a M - 4/3 I2b G,   a = J^(-4/3)
- *   d2 I2/dF2 = 4 F F + 2 I1 d_ik d_JL - 2 (d_ik C_LJ + F_iL F_kJ + B_ik d_JL) */
-static double add_second_invariant(double w, const struct kinematics *k, double stress[9],
-                                   double *tangent) {
-  const double *f = k->f, *g = k->cofactor;
-  double cg[9], b[9], fc[9], i1 = 0, cc = 0;
-  for (int i = 0; i < 3; i++) {
-    for (int j = 0; j < 3; j++) {
-      cg[3 * i + j] = b[3 * i + j] = 0;
-      for (int m = 0; m < 3; m++) {
-        cg[3 * i + j] += f[3 * m + i] * f[3 * m + j];
-        b[3 * i + j] += f[3 * i + m] * f[3 * j + m];
-      }
-    }
-    i1 += cg[4 * i];
-  }
-  for (int i = 0; i < 9; i++) {
-    cc += cg[i] * cg[i];
-    fc[i] = 0;
-    for (int m = 0; m < 3; m++) {
-      fc[i] += f[i / 3 * 3 + m] * cg[3 * m + i % 3];
-    }
-  }
-  double c = 1 / cbrt(k->j * k->j), a = c * c, i2 = a * 0.5 * (i1 * i1 - cc);
-  double m[9];
-  for (int i = 0; i < 9; i++) {
-    m[i] = a * 2 * (i1 * f[i] - fc[i]);
-    stress[i] += w * (m[i] - 4.0 / 3 * i2 * g[i]);
-  }
-  for (int p = 0; tangent && p < 9; p++) {
-    int i = p / 3, j = p % 3;
-    for (int q = 0; q < 9; q++) {
-      int n = q / 3, l = q % 3;
-      double second = 4 * f[p] * f[q] - 2 * f[3 * i + l] * f[3 * n + j];
-      second += i == n ? -2 * cg[3 * l + j] : 0;
-      second += j == l ? -2 * b[3 * i + n] : 0;
-      second += p == q ? 2 * i1 : 0;
-      tangent[9 * p + q] +=
-          w * (a * second - 4.0 / 3 * (m[p] * g[q] + g[p] * m[q]) + 16.0 / 9 * i2 * g[p] * g[q] +
-               4.0 / 3 * i2 * g[3 * n + j] * g[3 * i + l]);
-    }
-  }
-  return w * (i2 - 3);
 }
 
 void symmetric3_eigen(const double c[9], double value[3], double v[9]) {
@@ -246,21 +151,34 @@ static double ogden_law(const struct material_spec *material, const struct kinem
   return energy;
 }
 
+/* All of the tangent from its block rows i <= k. */
+static void expand_tangent(const double *pair, double tangent[81]) {
+  for (int i = 0; i < 3; i++) {
+    for (int k = i; k < 3; k++, pair += 9) {
+      for (int j = 0; j < 3; j++) {
+        for (int l = 0; l < 3; l++) {
+          tangent[9 * (3 * i + j) + 3 * k + l] = pair[3 * j + l];
+          tangent[9 * (3 * k + l) + 3 * i + j] = pair[3 * j + l];
+        }
+      }
+    }
+  }
+}
+
 double hyperelastic_isochoric(const struct material_spec *material, const struct kinematics *k,
                               double stress[9], double *tangent) {
-  switch (material->model) {
-  case MATERIAL_OGDEN:
+  if (material->model == MATERIAL_OGDEN) {
     return ogden_law(material, k, stress, tangent);
-  case MATERIAL_NEO_HOOKE: {
-    double half = 0.5 * material->c[0];
-    return invariant_law(k, &half, 1, stress, tangent);
   }
-  case MATERIAL_MOONEY_RIVLIN: {
-    double energy = invariant_law(k, material->c, 1, stress, tangent);
-    return energy + add_second_invariant(material->c[1], k, stress, tangent);
+  struct scalar_point x = {.j = k->j, .root = 1 / cbrt(k->j)};
+  double energy, pair[54];
+  memcpy(x.f, k->f, sizeof x.f);
+  memcpy(x.g, k->cofactor, sizeof x.g);
+  if (tangent) {
+    scalar_isochoric(material, &x, &energy, stress, pair);
+    expand_tangent(pair, tangent);
+  } else {
+    scalar_isochoric(material, &x, &energy, stress, NULL);
   }
-  case MATERIAL_YEOH:
-    break;
-  }
-  return invariant_law(k, material->c, material->terms, stress, tangent);
+  return energy;
 }

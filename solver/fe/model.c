@@ -109,7 +109,6 @@ static bool allocate(struct fe_model *m) {
   size_t faces = (size_t)m->mesh->face_count;
   m->geometry = calloc(elements, sizeof *m->geometry);
   m->internal = calloc(elements, sizeof *m->internal);
-  m->work = calloc(1, sizeof *m->work);
   m->cavity_start = calloc(elements + 2, sizeof *m->cavity_start);
   m->cavity_face = calloc(faces + 1, sizeof *m->cavity_face);
   m->dead_load = calloc(3 * nodes, sizeof *m->dead_load);
@@ -117,7 +116,7 @@ static bool allocate(struct fe_model *m) {
   m->node_of = calloc(3 * nodes, sizeof *m->node_of);
   m->residual = calloc(3 * nodes, sizeof *m->residual);
   m->element_value = calloc(elements * ELEMENT_PACKED, sizeof *m->element_value);
-  return m->geometry && m->internal && m->work && m->cavity_start && m->cavity_face &&
+  return m->geometry && m->internal && m->cavity_start && m->cavity_face &&
          m->dead_load && m->equation && m->node_of && m->residual && m->element_value;
 }
 
@@ -173,7 +172,6 @@ void model_destroy(struct fe_model *m) {
   ldlt_destroy(m->ldlt);
   free(m->geometry);
   free(m->internal);
-  free(m->work);
   free(m->cavity_start);
   free(m->cavity_face);
   free(m->dead_load);

@@ -34,7 +34,6 @@ struct fe_model {
   struct quad9_tables quad9;
   struct element_geometry *geometry; /* per element */
   struct element_internal *internal; /* per element */
-  struct element_work *work;
   double reference_volume; /* of the solid, m3 */
   int *cavity_start;       /* element_count + 1, into cavity_face */
   struct mesh_face *cavity_face;

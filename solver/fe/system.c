@@ -55,8 +55,7 @@ static enum status evaluate_elements(struct fe_model *m, const struct fe_state *
     double *packed = tangent ? m->element_value + (size_t)e * ELEMENT_PACKED : NULL;
     model_gather(m, state->u, e, u);
     if (!element_evaluate(&m->geometry[e], &m->material, m->bulk_modulus, u,
-                          state->p + ELEMENT_PRESSURES * e, m->work, residual, packed,
-                          &m->internal[e])) {
+                          state->p + ELEMENT_PRESSURES * e, residual, packed, &m->internal[e])) {
       return STATUS_INVERTED;
     }
     for (int f = m->cavity_start[e]; f < m->cavity_start[e + 1]; f++) {

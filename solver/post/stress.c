@@ -18,7 +18,7 @@ static void cauchy_stress(const struct fe_model *model, const struct fe_state *s
   kinematics_complete(&k);
   hyperelastic_isochoric(&model->material, &k, first, NULL);
   for (int m = 0; m < ELEMENT_PRESSURES; m++) {
-    pressure += geometry->phi[q][m] * state->p[ELEMENT_PRESSURES * element + m];
+    pressure += geometry->phi[m][q] * state->p[ELEMENT_PRESSURES * element + m];
   }
   for (int c = 0; c < STRESS_COMPONENTS; c++) {
     const double *a = first + 3 * row[c], *b = k.f + 3 * column[c];

@@ -21,8 +21,8 @@ static void crooked_nodes(double x[HEX27_NODES][3], double amplitude, unsigned s
 enum { MIXED = ELEMENT_DOFS + ELEMENT_PRESSURES };
 
 struct element_case {
+  struct hex27_tables tables;
   struct element_geometry geometry;
-  struct element_work work;
   struct element_internal internal;
   const struct material_spec *material;
   double bulk_modulus;
@@ -44,7 +44,7 @@ static void mixed_residual(struct element_case *c, double h, double r[MIXED]) {
   for (int m = 0; m < ELEMENT_PRESSURES; m++) {
     p[m] = c->p[m] + h * c->q[m];
   }
-  element_evaluate(&c->geometry, c->material, c->bulk_modulus, u, p, &c->work, r, packed, &at);
+  element_evaluate(&c->geometry, c->material, c->bulk_modulus, u, p, r, packed, &at);
   for (int m = 0; m < ELEMENT_PRESSURES; m++) {
     double y = 0;
     for (int n = 0; n < ELEMENT_PRESSURES; n++) {
@@ -112,15 +112,14 @@ static void mixed_derivative(struct element_case *c) {
 
 /* A large deformation with pressures, and a random direction. */
 static bool element_open(struct element_case *c, const struct material_spec *material) {
-  struct hex27_tables tables;
   double x[HEX27_NODES][3], residual[ELEMENT_DOFS];
   unsigned seed = 21;
-  hex27_tables_fill(&tables);
   crooked_nodes(x, 0.05, 3);
   memset(c, 0, sizeof *c);
+  hex27_tables_fill(&c->tables);
   c->material = material;
   c->bulk_modulus = 50 * material_shear_modulus(material);
-  element_geometry_fill(&tables, x, &c->geometry);
+  element_geometry_fill(&c->tables, x, &c->geometry);
   for (int d = 0; d < ELEMENT_DOFS; d++) {
     int i = d / HEX27_NODES, a = d % HEX27_NODES;
     c->u[i][a] = 0.3 * x[a][(i + 1) % 3] + 0.2 * x[a][0] * x[a][i] + 0.01 * body_random(&seed);
@@ -130,8 +129,8 @@ static bool element_open(struct element_case *c, const struct material_spec *mat
     c->p[m] = 0.3 * body_random(&seed);
     c->q[m] = body_random(&seed);
   }
-  bool good = element_evaluate(&c->geometry, material, c->bulk_modulus, c->u, c->p, &c->work,
-                               residual, c->packed, &c->internal);
+  bool good = element_evaluate(&c->geometry, material, c->bulk_modulus, c->u, c->p, residual,
+                               c->packed, &c->internal);
   mixed_derivative(c);
   return good;
 }

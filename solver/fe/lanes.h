@@ -1,0 +1,42 @@
+/* Eight numbers at once: what the kernels that are compiled for several instruction sets share.
+ * Vectors are passed by pointer only, since how they are passed by value depends on the set. */
+#ifndef PNEULAB_FE_LANES_H
+#define PNEULAB_FE_LANES_H
+
+#include <stdbool.h>
+
+enum { LANES = 8 };
+
+#define LANES_INLINE static inline __attribute__((always_inline))
+
+/* Aligned like one double. Narrower machines take several registers. */
+typedef double lanes __attribute__((vector_size(LANES * sizeof(double)), aligned(8)));
+typedef unsigned long long lanes_bits
+    __attribute__((vector_size(LANES * sizeof(double)), aligned(8)));
+
+#ifdef __x86_64__
+
+#define LANES_TARGET_512 __attribute__((target("avx512f,avx512vl,avx512dq,avx2,fma")))
+#define LANES_TARGET_256 __attribute__((target("avx2,fma")))
+
+/* Bits of the vectors that this processor has: 512, 256 or 128. */
+LANES_INLINE int lanes_width(void) {
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+      __builtin_cpu_supports("avx512dq")) {
+    return 512;
+  }
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? 256 : 128;
+}
+
+#else
+
+#define LANES_TARGET_512
+#define LANES_TARGET_256
+
+LANES_INLINE int lanes_width(void) {
+  return 128;
+}
+
+#endif
+
+#endif
