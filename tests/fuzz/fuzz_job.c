@@ -17,6 +17,15 @@ static void check_error(const struct error *error, enum status status) {
   json_decref(pointer);
 }
 
+/* What every accepted job of its kind has. */
+static bool is_complete(const struct job_spec *spec) {
+  if (spec->kind == JOB_VERIFY) {
+    return spec->verify.name[0] != '\0' && spec->verify.refinement >= 1;
+  }
+  return spec->pneunet.cavity_length > 0.0 && spec->pneunet.length > 0.0 &&
+         material_shear_modulus(&spec->material) > 0.0 && spec->load.steps >= 1;
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   static struct job_reader *reader; /* kept between inputs: creating it takes 10 ms */
   if (!reader && job_reader_create(&reader, NULL) != STATUS_OK) {
@@ -27,8 +36,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   enum status status = job_reader_read(reader, (const char *)data, size, &spec, &error);
   if (status != STATUS_OK) {
     check_error(&error, status);
-  } else if (!(spec.pneunet.cavity_length > 0.0) || !(spec.pneunet.length > 0.0) ||
-             !(material_shear_modulus(&spec.material) > 0.0) || spec.load.steps < 1) {
+  } else if (!is_complete(&spec)) {
     abort();
   }
   return 0;
