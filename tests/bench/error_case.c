@@ -77,30 +77,12 @@ static double number(const json_t *object, const char *key, const char *suffix) 
   return json_is_number(value) ? json_number_value(value) : NAN;
 }
 
-static void fill(const json_t *document, const struct sample *reference, struct error_case *r) {
-  const json_t *metrics = json_object_get(document, "metrics");
-  const json_t *statistics = json_object_get(document, "statistics");
-  double degree = M_PI / 180;
-  const struct error_metric list[ERROR_METRICS] = {
-      {.name = "bending_angle_deg", .reference = reference->shape.bending_angle / degree},
-      {.name = "chord_angle_deg", .reference = reference->shape.chord_angle / degree},
-      {.name = "end_face_angle_deg", .reference = reference->shape.end_face_angle / degree},
-      {.name = "tip_deflection_mm", .reference = 1e3 * reference->tip_deflection},
-      {.name = "cavity_volume_mm3", .reference = 1e9 * reference->cavity_volume},
-      {.name = "max_stretch", .reference = reference->max_stretch}};
-  for (int k = 0; k < ERROR_METRICS; k++) {
-    r->metric[k] = list[k];
-    r->metric[k].value = number(metrics, list[k].name, "");
-    r->metric[k].estimate = number(metrics, list[k].name, "_error");
-  }
-  r->unknowns = (int)number(statistics, "unknowns", "");
-  r->estimate_s = number(statistics, "estimate_s", "");
-  r->solve_s = number(statistics, "cpu_s", "") - r->estimate_s;
-}
+static const char *const names[ERROR_METRICS] = {"bending_angle_deg",  "chord_angle_deg",
+                                                 "end_face_angle_deg", "tip_deflection_mm",
+                                                 "cavity_volume_mm3",  "max_stretch"};
 
-enum status error_case_run(const struct job_spec *spec, struct error_case *result,
-                           struct error *error) {
-  struct sample reference = {0};
+enum status error_case_metrics(const struct job_spec *spec, struct error_case *result,
+                               struct error *error) {
   json_t *document = NULL;
   enum status ending = STATUS_OK;
   *result = (struct error_case){0};
@@ -110,12 +92,38 @@ enum status error_case_run(const struct job_spec *spec, struct error_case *resul
                        json_string_value(json_object_get(document, "message")));
   }
   if (status == STATUS_OK) {
+    const json_t *metrics = json_object_get(document, "metrics");
+    const json_t *statistics = json_object_get(document, "statistics");
+    for (int k = 0; k < ERROR_METRICS; k++) {
+      result->metric[k] = (struct error_metric){.name = names[k],
+                                                .value = number(metrics, names[k], ""),
+                                                .estimate = number(metrics, names[k], "_error")};
+    }
+    result->unknowns = (int)number(statistics, "unknowns", "");
+    result->estimate_s = number(statistics, "estimate_s", "");
+    result->solve_s = number(statistics, "cpu_s", "") - result->estimate_s;
+  }
+  json_decref(document);
+  return status;
+}
+
+enum status error_case_run(const struct job_spec *spec, struct error_case *result,
+                           struct error *error) {
+  struct sample reference = {0};
+  enum status status = error_case_metrics(spec, result, error);
+  if (status == STATUS_OK) {
     status = solve_reference(spec, &reference, &result->reference_unknowns, error);
   }
   if (status == STATUS_OK) {
-    fill(document, &reference, result);
+    double degree = M_PI / 180;
+    const double value[ERROR_METRICS] = {
+        reference.shape.bending_angle / degree,  reference.shape.chord_angle / degree,
+        reference.shape.end_face_angle / degree, 1e3 * reference.tip_deflection,
+        1e9 * reference.cavity_volume,           reference.max_stretch};
+    for (int k = 0; k < ERROR_METRICS; k++) {
+      result->metric[k].reference = value[k];
+    }
   }
-  json_decref(document);
   return status;
 }
 

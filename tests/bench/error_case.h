@@ -17,7 +17,12 @@ struct error_case {
   double solve_s, estimate_s; /* CPU time of load path and estimate */
 };
 
-/* Solves the job as pneulab-solve does, and once more on a mesh whose cells subdivide those of the
+/* Solves the job as pneulab-solve does: all of *result but the references and their unknowns. An
+ * estimate that is missing is NAN. STATUS_OK or why there is no solution, with *error. */
+enum status error_case_metrics(const struct job_spec *spec, struct error_case *result,
+                               struct error *error);
+
+/* The same, and once more on a mesh whose cells subdivide those of the
  * job in every direction, to which the last state of the load path is carried. Its own error is
  * about a tenth of that of the job's mesh, the corners being singular.
  * STATUS_OK or why a solution is missing, with *error. */
