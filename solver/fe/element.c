@@ -3,6 +3,8 @@
 #include <cblas.h>
 #include <math.h>
 #include <string.h>
+#include "solver/fe/element_evaluate.h"
+#include "solver/fe/lanes.h"
 
 /* Of a symmetric positive definite matrix: Gauss-Jordan needs no pivoting. */
 static void invert(double m[ELEMENT_PRESSURES][ELEMENT_PRESSURES],
@@ -100,6 +102,21 @@ void element_gradient(const struct element_geometry *geometry, int q, double u[3
       f[3 * i + j] = (i == j) + h[0] * geometry->inverse[j][q] +
                      h[1] * geometry->inverse[3 + j][q] + h[2] * geometry->inverse[6 + j][q];
     }
+  }
+}
+
+bool element_evaluate(const struct element_geometry *geometry, const struct material_spec *material,
+                      double bulk_modulus, double u[3][HEX27_STRIDE],
+                      const double p[ELEMENT_PRESSURES], double residual[ELEMENT_DOFS],
+                      double *packed, struct element_internal *internal) {
+  struct element_arguments a = {geometry, material, bulk_modulus, u, p, residual, packed, internal};
+  switch (lanes_width()) {
+  case 512:
+    return element_evaluate_512(&a);
+  case 256:
+    return element_evaluate_256(&a);
+  default:
+    return element_evaluate_128(&a);
   }
 }
 

@@ -1,18 +1,19 @@
-/* Eight numbers at once: what the kernels that are compiled for several instruction sets share.
- * Vectors are passed by pointer only, since how they are passed by value depends on the set. */
+/* Several numbers at once, for kernels that are compiled for several instruction sets. Such a
+ * kernel defines LANES before including this. Vectors are passed by pointer only, since how they
+ * are passed by value depends on the set. */
 #ifndef PNEULAB_FE_LANES_H
 #define PNEULAB_FE_LANES_H
 
 #include <stdbool.h>
 
-enum { LANES = 8 };
-
 #define LANES_INLINE static inline __attribute__((always_inline))
 
-/* Aligned like one double. Narrower machines take several registers. */
+#ifdef LANES
+/* Aligned like one double. */
 typedef double lanes __attribute__((vector_size(LANES * sizeof(double)), aligned(8)));
 typedef unsigned long long lanes_bits
     __attribute__((vector_size(LANES * sizeof(double)), aligned(8)));
+#endif
 
 #ifdef __x86_64__
 

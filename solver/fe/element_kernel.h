@@ -1,9 +1,9 @@
-/* Evaluation of one element, in three steps: the response at the Gauss points, eight of them at a
+/* Evaluation of one element, in three steps: the response at the Gauss points, LANES of them at a
  * time, pulled back to the parent coordinates; the sums over the points, which factor into three
  * sums over one direction each, since shape functions and points are products; the condensation.
- * The same code is compiled for several instruction sets. */
+ * Included once by the file of each instruction set, which defines LANES. */
 #include <string.h>
-#include "solver/fe/element.h"
+#include "solver/fe/element_evaluate.h"
 
 #define REAL lanes
 #define LAW(name) lanes_##name
@@ -270,7 +270,7 @@ LANES_INLINE void right_columns(const struct element_geometry *geometry, const s
                                 bool coupling, double to[HEX27_NODES][RIGHT]) {
   ALIGNED double x[9][RIGHT] = {{0}};
   ALIGNED lanes third[RIGHT / LANES][81];
-  int halves = coupling ? RIGHT / LANES : 1;
+  int halves = coupling ? RIGHT / LANES : (3 + LANES - 1) / LANES;
   for (int line = 0; line < 9; line++) {
     for (int k = 0; k < 3; k++) {
       int q = 3 * line + k;
@@ -426,42 +426,10 @@ LANES_INLINE bool evaluate(const struct element_geometry *geometry,
   return true;
 }
 
-/* What element_evaluate is given. */
-struct arguments {
-  const struct element_geometry *geometry;
-  const struct material_spec *material;
-  double bulk_modulus;
-  double (*u)[HEX27_STRIDE];
-  const double *p;
-  double *residual, *packed;
-  struct element_internal *internal;
-};
-
 /* Apart with and without tangent, so that neither carries the other's tests. */
-LANES_INLINE bool evaluate_either(const struct arguments *a) {
+LANES_INLINE bool evaluate_either(const struct element_arguments *a) {
   return a->packed ? evaluate(a->geometry, a->material, a->bulk_modulus, a->u, a->p, a->residual,
                               a->packed, a->internal)
                    : evaluate(a->geometry, a->material, a->bulk_modulus, a->u, a->p, a->residual,
                               NULL, a->internal);
-}
-
-LANES_TARGET_512 static bool evaluate_512(const struct arguments *a) {
-  return evaluate_either(a);
-}
-
-LANES_TARGET_256 static bool evaluate_256(const struct arguments *a) {
-  return evaluate_either(a);
-}
-
-static bool evaluate_128(const struct arguments *a) {
-  return evaluate_either(a);
-}
-
-bool element_evaluate(const struct element_geometry *geometry, const struct material_spec *material,
-                      double bulk_modulus, double u[3][HEX27_STRIDE],
-                      const double p[ELEMENT_PRESSURES], double residual[ELEMENT_DOFS],
-                      double *packed, struct element_internal *internal) {
-  struct arguments a = {geometry, material, bulk_modulus, u, p, residual, packed, internal};
-  int width = lanes_width();
-  return width == 512 ? evaluate_512(&a) : width == 256 ? evaluate_256(&a) : evaluate_128(&a);
 }
