@@ -1,4 +1,3 @@
-#include <cblas.h>
 #include <string.h>
 #include "solver/fe/ldlt_front.h"
 #include "solver/fe/ldlt_internal.h"
@@ -122,49 +121,4 @@ int ldlt_factor(struct ldlt *f, const double *const *values) {
     }
   }
   return negative;
-}
-
-void ldlt_solve(struct ldlt *f, const double *b, double *x) {
-  double *y = f->vector, *part = f->vector + f->dof_count;
-  for (int i = 0; i < f->dof_count; i++) {
-    y[f->position[i]] = b[i];
-  }
-  for (int k = 0; k < f->front_count; k++) {
-    const struct front *front = &f->front[k];
-    const double *l = f->value + front->value;
-    int lead = front->rows, below = front->rows - front->columns;
-    double *head = y + front->first;
-    cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, front->columns, l, lead,
-                head, 1);
-    if (below > 0) {
-      const int *row = f->row + front->row + front->columns;
-      cblas_dgemv(CblasColMajor, CblasNoTrans, below, front->columns, 1, l + front->columns, lead,
-                  head, 1, 0, part, 1);
-      for (int i = 0; i < below; i++) {
-        y[row[i]] -= part[i];
-      }
-    }
-  }
-  for (int i = 0; i < f->dof_count; i++) {
-    y[i] *= f->sign[i];
-  }
-  for (int k = f->front_count - 1; k >= 0; k--) {
-    const struct front *front = &f->front[k];
-    const double *l = f->value + front->value;
-    int lead = front->rows, below = front->rows - front->columns;
-    double *head = y + front->first;
-    if (below > 0) {
-      const int *row = f->row + front->row + front->columns;
-      for (int i = 0; i < below; i++) {
-        part[i] = y[row[i]];
-      }
-      cblas_dgemv(CblasColMajor, CblasTrans, below, front->columns, -1, l + front->columns, lead,
-                  part, 1, 1, head, 1);
-    }
-    cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, front->columns, l, lead, head,
-                1);
-  }
-  for (int i = 0; i < f->dof_count; i++) {
-    x[i] = y[f->position[i]];
-  }
 }
