@@ -104,6 +104,9 @@ struct pneunet_cells pneunet_resolution(const struct job_spec *spec) {
              (p->gap_wall > thick_ratio * p->cavity_length || has_joint(p))) {
     cells.gap_wall.cells++;
   }
+  if (spec->accuracy == ACCURACY_STANDARD && has_joint(p) && cells.cavity.cells < 3) {
+    cells.cavity = (struct grid_division){.cells = 3, .first = 0.5, .last = 0.5};
+  }
   choose(spec->mesh.gap_wall, &cells.gap_wall);
   choose(spec->mesh.cavity, &cells.cavity);
   choose(spec->mesh.gap, &cells.gap);
