@@ -255,7 +255,7 @@ static const struct verify_case cases[] = {
      .x_label = "Moment over 2πEI/L",
      .y_label = "Turn of the end (°)",
      .bound = 0.02,
-     .bound_because = "eight parabolas of 45 degrees: chord against arc (pi/8)^4 / 4",
+     .bound_because = "sixteen parabolas of 22.5 degrees, (pi/8)^4 = 2 % of their curvature",
      .run = case_roll_up},
     {.name = "elastica",
      .title = "Elastica: cantilever under a dead tip load P L^2 / EI = 1, 4, 10",
