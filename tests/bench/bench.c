@@ -95,6 +95,15 @@ json_t *bench_machine(double dgemm_rate) {
                    "blas_kernels", openblas_get_corename(), "dgemm_flop_s", dgemm_rate);
 }
 
+char *bench_absolute(const char *path) {
+  char *here = path[0] == '/' ? strdup("") : getcwd(NULL, 0), *absolute = NULL;
+  if (here && asprintf(&absolute, "%s%s%s", here, *here ? "/" : "", path) < 0) {
+    absolute = NULL;
+  }
+  free(here);
+  return absolute;
+}
+
 bool bench_write_json(const char *path, const json_t *document) {
   if (!document || json_dump_file(document, path, JSON_INDENT(1) | JSON_REAL_PRECISION(6)) != 0) {
     fprintf(stderr, "%s: cannot be written\n", path);

@@ -26,6 +26,10 @@ double bench_dgemm_rate(void);
 /* Description of machine and libraries for the head of a JSON file; a new reference, or NULL. */
 json_t *bench_machine(double dgemm_rate);
 
+/* Absolute form of a path whose file need not exist, for programs that change their directory.
+ * The caller frees it; NULL when memory runs out. */
+char *bench_absolute(const char *path);
+
 /* Writes `document` to `path`; false with a message on standard error when that fails. */
 bool bench_write_json(const char *path, const json_t *document);
 

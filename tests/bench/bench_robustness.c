@@ -27,8 +27,8 @@ struct arguments {
 /* How one design ended. */
 struct outcome {
   char status[16], reason[32];
-  double angle_deg, pressure_kPa, cpu_s, wall_s;
-  int factorizations;
+  double angle_deg, pressure_kPa, cpu_s, wall_s, peak_memory_MB;
+  int factorizations, unknowns;
   bool touched;
 };
 
@@ -75,6 +75,8 @@ static void take_result(const json_t *result, struct outcome *o) {
   o->touched = json_object_get(metrics, "contact_onset_kPa") != NULL;
   double factorizations = number(statistics, "factorizations");
   o->factorizations = isfinite(factorizations) ? (int)factorizations : 0;
+  double unknowns = number(statistics, "unknowns");
+  o->unknowns = isfinite(unknowns) ? (int)unknowns : 0;
 }
 
 static void print_number(const char *format, double x) {
@@ -116,6 +118,7 @@ static void finish(void *context, int k, const struct pool_end *end) {
   json_decref(result);
   o->cpu_s = end->cpu_s;
   o->wall_s = end->wall_s;
+  o->peak_memory_MB = 1e-6 * end->peak_memory;
   print_outcome(b->first + k, o);
 }
 
@@ -192,13 +195,14 @@ static json_t *document(const struct bench *b, int count, json_t *summary) {
     const struct outcome *o = &b->outcome[k];
     char path[PATH_SIZE];
     snprintf(path, sizeof path, "%s/design-%04d.json", b->directory, b->first + k);
-    json_array_append_new(designs,
-                          json_pack("{s:i, s:s, s:s, s:o, s:o, s:i, s:b, s:f, s:f, s:o*}", "index",
-                                    b->first + k, "status", o->status, "reason", o->reason,
-                                    "bending_angle_deg", real_or_null(o->angle_deg), "pressure_kPa",
-                                    real_or_null(o->pressure_kPa), "factorizations",
-                                    o->factorizations, "touched", o->touched, "cpu_s", o->cpu_s,
-                                    "wall_s", o->wall_s, "job", json_load_file(path, 0, NULL)));
+    json_array_append_new(
+        designs,
+        json_pack("{s:i, s:s, s:s, s:o, s:o, s:i, s:i, s:b, s:f, s:f, s:f, s:o*}", "index",
+                  b->first + k, "status", o->status, "reason", o->reason, "bending_angle_deg",
+                  real_or_null(o->angle_deg), "pressure_kPa", real_or_null(o->pressure_kPa),
+                  "factorizations", o->factorizations, "unknowns", o->unknowns, "touched",
+                  o->touched, "cpu_s", o->cpu_s, "wall_s", o->wall_s, "peak_memory_MB",
+                  o->peak_memory_MB, "job", json_load_file(path, 0, NULL)));
   }
   return json_pack("{s:o*, s:{s:i, s:I, s:s, s:i, s:i, s:f}, s:O, s:o}", "machine",
                    bench_machine(bench_dgemm_rate()), "options", "count", a->design.count, "seed",

@@ -1,8 +1,9 @@
 /* Where the time of one solve goes, and how close the factorisation comes to the machine.
- *   bench_solve JOB.json [repetitions]
+ *   bench_solve [--json FILE] [--repetitions N] JOB.json
  * Speeds are given as shares of the dgemm rate that the same run measures on one core, so that
  * numbers of different machines compare. */
 #include <cblas.h>
+#include <getopt.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -92,20 +93,59 @@ static void print_timing(const struct timing *t, double rate) {
   printf("peak memory %.1f MB\n", (double)usage.ru_maxrss / 1024);
 }
 
-int main(int count, char **argument) {
+static json_t *timing_json(const struct timing *t, double rate) {
+  const struct fe_statistics *p = &t->parts;
+  double known = t->setup + p->assembly_s + p->residual_s + p->factor_s + p->solve_s + p->contact_s;
+  struct rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  json_t *parts =
+      json_pack("{s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "setup_s", t->setup, "assembly_s",
+                p->assembly_s, "residual_s", p->residual_s, "factor_s", p->factor_s, "solve_s",
+                p->solve_s, "contact_s", p->contact_s, "other_s", t->cpu - known);
+  return json_pack("{s:i, s:i, s:f, s:f, s:i, s:i, s:f, s:f, s:i, s:f, s:f, s:f, s:o}", "elements",
+                   t->elements, "unknowns", t->unknowns, "wall_s", t->wall, "cpu_s", t->cpu,
+                   "factorizations", p->factorizations, "analyses", p->analyses, "flops",
+                   t->factor.flops, "factor_entries", (double)t->factor.factor_entries,
+                   "largest_front", t->factor.largest_front, "factor_dgemm_share",
+                   t->factor.flops * p->factorizations / p->factor_s / rate, "limit_share",
+                   p->factorizations * t->factor.flops / rate / t->cpu, "peak_memory_bytes",
+                   1024 * (double)usage.ru_maxrss, "parts", parts);
+}
+
+struct arguments {
+  const char *json, *job;
+  long repetitions;
+};
+
+static bool parse(int argc, char **argv, struct arguments *a) {
+  static const struct option options[] = {
+      {"json", required_argument, NULL, 'j'}, {"repetitions", required_argument, NULL, 'r'}, {0}};
+  int option;
+  while ((option = getopt_long(argc, argv, "", options, NULL)) != -1) {
+    if (option == '?') {
+      return false;
+    }
+    a->json = option == 'j' ? optarg : a->json;
+    a->repetitions = option == 'r' ? strtol(optarg, NULL, 10) : a->repetitions;
+  }
+  a->job = optind + 1 == argc ? argv[optind] : NULL;
+  return a->job && a->repetitions > 0;
+}
+
+int main(int argc, char **argv) {
+  struct arguments a = {.repetitions = 3};
   struct job_spec spec;
-  if (count < 2) {
-    fprintf(stderr, "usage: %s JOB.json [repetitions]\n", argument[0]);
+  if (!parse(argc, argv, &a)) {
+    fprintf(stderr, "usage: %s [--json FILE] [--repetitions N] JOB.json\n", argv[0]);
     return EXIT_FAILURE;
   }
-  if (!bench_read_job(argument[1], &spec)) {
+  if (!bench_read_job(a.job, &spec)) {
     return EXIT_FAILURE;
   }
-  long repetitions = count > 2 ? strtol(argument[2], NULL, 10) : 3;
   openblas_set_num_threads(1);
   double rate = bench_dgemm_rate();
   struct timing best = {.cpu = INFINITY};
-  for (long k = 0; k < repetitions; k++) {
+  for (long k = 0; k < a.repetitions; k++) {
     struct timing t = {0};
     struct error error = {0};
     enum status status = solve(&spec, &t, &error);
@@ -115,7 +155,15 @@ int main(int count, char **argument) {
     }
     best = t.cpu < best.cpu ? t : best;
   }
-  printf("%s, best of %ld\n", spec.name, repetitions);
-  print_timing(&best, fmax(rate, bench_dgemm_rate()));
-  return EXIT_SUCCESS;
+  rate = fmax(rate, bench_dgemm_rate());
+  printf("%s, best of %ld\n", spec.name, a.repetitions);
+  print_timing(&best, rate);
+  bool good = true;
+  if (a.json) {
+    json_t *document = json_pack("{s:s, s:s, s:o, s:o}", "program", "bench_solve", "job", spec.name,
+                                 "machine", bench_machine(rate), "solve", timing_json(&best, rate));
+    good = bench_write_json(a.json, document);
+    json_decref(document);
+  }
+  return good ? EXIT_SUCCESS : EXIT_FAILURE;
 }

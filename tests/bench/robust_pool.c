@@ -72,7 +72,8 @@ static void look_after(const struct pool *pool, struct slot *slot) {
                            .exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1,
                            .signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0,
                            .wall_s = wall,
-                           .cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime)};
+                           .cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime),
+                           .peak_memory = 1024 * (double)usage.ru_maxrss};
     slot->pid = 0;
     pool->finish(pool->context, slot->k, &end);
   } else if (slot->asked_at > 0) {

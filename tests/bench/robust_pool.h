@@ -11,6 +11,7 @@ struct pool_end {
   int exit_code;  /* -1 when a signal ended it */
   int signal;     /* that signal, 0 otherwise */
   double wall_s, cpu_s;
+  double peak_memory; /* bytes */
 };
 
 struct pool {
