@@ -27,7 +27,7 @@ struct arguments {
 /* How one design ended. */
 struct outcome {
   char status[16], reason[32];
-  double angle_deg, pressure_kPa, cpu_s, wall_s, peak_memory_MB;
+  double angle_deg, pressure_kPa, cpu_s, wall_s, peak_memory_MB, estimate_s;
   int factorizations, unknowns;
   bool touched;
 };
@@ -75,6 +75,7 @@ static void take_result(const json_t *result, struct outcome *o) {
   o->touched = json_object_get(metrics, "contact_onset_kPa") != NULL;
   double factorizations = number(statistics, "factorizations");
   o->factorizations = isfinite(factorizations) ? (int)factorizations : 0;
+  o->estimate_s = fmax(0, number(statistics, "estimate_s"));
   double unknowns = number(statistics, "unknowns");
   o->unknowns = isfinite(unknowns) ? (int)unknowns : 0;
 }
@@ -197,12 +198,12 @@ static json_t *document(const struct bench *b, int count, json_t *summary) {
     snprintf(path, sizeof path, "%s/design-%04d.json", b->directory, b->first + k);
     json_array_append_new(
         designs,
-        json_pack("{s:i, s:s, s:s, s:o, s:o, s:i, s:i, s:b, s:f, s:f, s:f, s:o*}", "index",
+        json_pack("{s:i, s:s, s:s, s:o, s:o, s:i, s:i, s:b, s:f, s:f, s:f, s:f, s:o*}", "index",
                   b->first + k, "status", o->status, "reason", o->reason, "bending_angle_deg",
                   real_or_null(o->angle_deg), "pressure_kPa", real_or_null(o->pressure_kPa),
                   "factorizations", o->factorizations, "unknowns", o->unknowns, "touched",
-                  o->touched, "cpu_s", o->cpu_s, "wall_s", o->wall_s, "peak_memory_MB",
-                  o->peak_memory_MB, "job", json_load_file(path, 0, NULL)));
+                  o->touched, "cpu_s", o->cpu_s, "wall_s", o->wall_s, "estimate_s", o->estimate_s,
+                  "peak_memory_MB", o->peak_memory_MB, "job", json_load_file(path, 0, NULL)));
   }
   return json_pack("{s:o*, s:{s:i, s:I, s:s, s:i, s:i, s:f}, s:O, s:o}", "machine",
                    bench_machine(bench_dgemm_rate()), "options", "count", a->design.count, "seed",
