@@ -13,9 +13,9 @@ enum {
   CHORD_STEPS = 12
 };
 
-/* Overlap, in thicknesses of the thinnest wall, that is put up with when multipliers do not settle.
- */
-static const double penetration_tolerance = 0.002;
+/* Overlap, in thicknesses of the thinnest wall, and movement, in step tolerances, that are put up
+ * with while multipliers do not settle. */
+static const double penetration_tolerance = 0.004, still_moves = 30;
 
 static double body_length(const struct mesh *mesh) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -230,6 +230,7 @@ static bool polish(struct equilibrium *s, struct fe_load *load, struct fe_state 
       return false;
     }
     s->last_correction = next;
+    s->moved += next;
     /* With a contraction rate the error left is rate / (1 - rate) times the last correction. */
     double rate = isfinite(size) ? fmin(next / size, 0.5) : 0.5;
     if (next * rate / (1 - rate) < tolerance) {
@@ -255,6 +256,7 @@ static enum status step_and_polish(struct equilibrium *s, struct fe_load *load, 
             share, s->negative_pivots, c.active, c.min_gap, *load_parameter(s, load));
   }
   s->last_correction = size;
+  s->moved += size;
   *converged = status == STATUS_OK && share == 1 && polish(s, load, state, size, 0.1);
   return status;
 }
@@ -344,43 +346,59 @@ static bool touches(const struct fe_model *m) {
   return m->use_contact || m->contact.plane_count > 0;
 }
 
+/* Brings the state back into equilibrium after an update of the multipliers. */
+static enum status rebalance(struct equilibrium *s, struct fe_load *load, struct fe_state *state,
+                             int *iterations) {
+  enum status status = model_evaluate(s->model, state, load, false);
+  if (status == STATUS_OK && !polish(s, load, state, INFINITY, 1)) {
+    status = newton(s, load, load->pressure, state, iterations);
+  }
+  return status;
+}
+
+/* Whether the contact has settled: its tractions, or, where more points touch than the surfaces can
+ * keep apart at once, so that single tractions go on changing, the shape and the overlap. */
+static bool settled(const struct equilibrium *s, double change) {
+  double overlap = contact_summarise(&s->model->contact).penetration;
+  bool still = s->moved < still_moves * s->options.step_tolerance;
+  return change < s->options.traction_tolerance ||
+         (still && overlap < penetration_tolerance * s->model->mesh->wall_thickness);
+}
+
 /* Raises the contact multipliers to the tractions until they settle; the factor stays frozen
  * while that contracts. */
 static enum status augment(struct equilibrium *s, struct fe_load *load, struct fe_state *state,
                            int *iterations) {
   struct fe_model *m = s->model;
   double relaxation = 0;
-  bool settled = false;
-  for (int k = 0; k < AUGMENTATIONS && !settled; k++) {
+  s->moved = INFINITY;
+  for (int k = 0; k < AUGMENTATIONS; k++) {
     enum status status = meet(s, load, state);
     if (status != STATUS_OK) {
       return status;
     }
     double change = contact_update_multipliers(&m->contact, &relaxation);
-    settled = change < s->options.traction_tolerance;
     if (s->verbose) {
-      fprintf(stderr, "    augmentation %d: change %.3e Pa, gap %.3e\n", k, change,
-              contact_summarise(&m->contact).min_gap);
+      struct contact_summary c = contact_summarise(&m->contact);
+      fprintf(stderr, "    augmentation %d: change %.3e Pa, overlap %.3e m, moved %.3e m\n", k,
+              change, c.penetration, s->moved);
     }
-    if (settled) {
-      break;
+    if (settled(s, change)) {
+      return STATUS_OK;
     }
-    status = model_evaluate(m, state, load, false);
-    if (status == STATUS_OK && !polish(s, load, state, INFINITY, 1)) {
-      status = newton(s, load, load->pressure, state, iterations);
-    }
+    s->moved = 0;
+    status = rebalance(s, load, state, iterations);
     if (status != STATUS_OK) {
       return status;
     }
   }
-  bool tight =
-      contact_summarise(&m->contact).penetration < penetration_tolerance * m->mesh->wall_thickness;
-  return settled || tight ? STATUS_OK : STATUS_CONTACT;
+  return STATUS_CONTACT;
 }
 
 /* Multipliers to start from: those of the state, carried on at the rate of the last step. */
 static void start_multipliers(struct equilibrium *s, const struct fe_state *state, double ratio) {
   struct contact *contact = &s->model->contact;
+  contact_reset_factors(contact);
   for (int i = 0; i < contact->point_count; i++) {
     double change = state->lambda[i] > 0 ? ratio * s->lambda_step[i] : 0;
     contact->point[i].lambda = fmax(0, state->lambda[i] + change);

@@ -42,7 +42,8 @@ struct equilibrium {
   int negative_pivots;  /* of the last factorisation */
   int fewest_negative, most_negative; /* over the factorisations of the last solve */
   double last_correction;             /* rms of the last correction, m */
-  int verbose;                        /* 1: a line an iteration on standard error */
+  double moved; /* sum of the rms of corrections since it was last set to 0, m */
+  int verbose;  /* 1: a line an iteration on standard error */
 };
 
 enum status equilibrium_create(struct fe_model *model, struct equilibrium **out,
