@@ -129,36 +129,37 @@ static int compare(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* Share of the designs that took no longer: two points a design make steps. */
-static size_t cumulate(const json_t *designs, struct point *steps) {
+/* CPU times in rising order, each with the share of the designs that took no longer, in per cent.
+ */
+static size_t cumulate(const json_t *designs, struct point *points) {
   size_t count = 0, index;
   const json_t *design;
   json_array_foreach(designs, index, design) {
     double time = figure_number(design, "cpu_s");
     if (time > 0) {
-      steps[count++] = (struct point){time, 0};
+      points[count++] = (struct point){time, 0};
     }
   }
-  qsort(steps, count, sizeof *steps, compare);
+  qsort(points, count, sizeof *points, compare);
   for (size_t k = 0; k < count; k++) {
-    steps[k].y = 100.0 * (double)(k + 1) / (double)count;
+    points[k].y = 100.0 * (double)(k + 1) / (double)count;
   }
   return count;
 }
 
 static bool plot_designs(const json_t *document, const char *directory) {
   const json_t *designs = json_object_get(document, "designs");
-  struct point *steps = calloc(json_array_size(designs) + 1, sizeof *steps);
-  if (!steps) {
+  struct point *points = calloc(json_array_size(designs) + 1, sizeof *points);
+  if (!points) {
     fprintf(stderr, "performance: out of memory\n");
     return false;
   }
   char subtitle[120];
-  size_t count = cumulate(designs, steps);
+  size_t count = cumulate(designs, points);
   snprintf(subtitle, sizeof subtitle, "%zu designs of a Latin hypercube, accuracy %s", count,
            figure_text(json_object_get(document, "options"), "accuracy"));
   struct chart_series series = {
-      .points = steps, .count = count, .colour = colour_series(0), .width = 2.2};
+      .points = points, .count = count, .colour = colour_series(0), .width = 2.2};
   struct chart chart = {.title = "Designs that took no longer",
                         .subtitle = subtitle,
                         .notice = "",
@@ -169,7 +170,7 @@ static bool plot_designs(const json_t *document, const char *directory) {
                         .series_count = 1,
                         .empty = "No design was solved"};
   bool good = write_chart(&chart, directory, "performance-designs");
-  free(steps);
+  free(points);
   return good;
 }
 
