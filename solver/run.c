@@ -63,6 +63,7 @@ static void estimate(struct run *run) {
   struct error error = {0};
   struct sample finer;
   double start = clock_cpu_s();
+  model_retire(run->solve.model);
   enum status status =
       estimate_finer(run->spec, &run->solve, run->spec->load.pressure_to, &finer, &error);
   result_compare(run->result, status == STATUS_OK ? &finer : NULL, &error, clock_cpu_s() - start);

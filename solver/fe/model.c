@@ -97,6 +97,7 @@ enum status model_analyse(struct fe_model *m, struct error *error) {
   struct ldlt_pattern pattern = {m->dof_count, mesh->node_count, m->node_of, cliques, start, dofs};
   status = ldlt_create(&pattern, &m->ldlt, error);
   m->pattern_stale = status != STATUS_OK;
+  m->factor = status == STATUS_OK ? ldlt_statistics(m->ldlt) : m->factor;
   m->statistics.analyses++;
 done:
   free(start);
@@ -116,8 +117,8 @@ static bool allocate(struct fe_model *m) {
   m->node_of = calloc(3 * nodes, sizeof *m->node_of);
   m->residual = calloc(3 * nodes, sizeof *m->residual);
   m->element_value = calloc(elements * ELEMENT_PACKED, sizeof *m->element_value);
-  return m->geometry && m->internal && m->cavity_start && m->cavity_face &&
-         m->dead_load && m->equation && m->node_of && m->residual && m->element_value;
+  return m->geometry && m->internal && m->cavity_start && m->cavity_face && m->dead_load &&
+         m->equation && m->node_of && m->residual && m->element_value;
 }
 
 enum status model_create(const struct mesh *mesh, const struct material_spec *material,
@@ -182,6 +183,17 @@ void model_destroy(struct fe_model *m) {
   free(m->contact_value);
   free(m->clique_value);
   free(m);
+}
+
+void model_retire(struct fe_model *m) {
+  ldlt_destroy(m->ldlt);
+  free(m->element_value);
+  free(m->contact_value);
+  free(m->internal);
+  m->ldlt = NULL;
+  m->element_value = m->contact_value = NULL;
+  m->internal = NULL;
+  m->pattern_stale = true;
 }
 
 void model_add_gravity(struct fe_model *m, const double gravity[3]) {

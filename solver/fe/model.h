@@ -34,8 +34,8 @@ struct fe_model {
   struct quad9_tables quad9;
   struct element_geometry *geometry; /* per element */
   struct element_internal *internal; /* per element */
-  double reference_volume; /* of the solid, m3 */
-  int *cavity_start;       /* element_count + 1, into cavity_face */
+  double reference_volume;           /* of the solid, m3 */
+  int *cavity_start;                 /* element_count + 1, into cavity_face */
   struct mesh_face *cavity_face;
   double *dead_load; /* node_count x 3, N at factor 1; the caller may add to it */
   int dof_count;
@@ -49,6 +49,7 @@ struct fe_model {
   bool pattern_stale; /* the pairs of the contact are not those of the analysis */
   struct contact contact;
   struct ldlt *ldlt;
+  struct ldlt_statistics factor; /* of the last analysis */
   struct fe_statistics statistics;
 };
 
@@ -59,6 +60,10 @@ struct fe_model {
 enum status model_create(const struct mesh *mesh, const struct material_spec *material,
                          bool use_contact, struct fe_model **out, struct error *error);
 void model_destroy(struct fe_model *model);
+
+/* Gives up what only solving needs (factor and tangents): the model can then no
+ * longer be evaluated, but volumes, gaps, mesh and statistics are still there. */
+void model_retire(struct fe_model *model);
 
 /* Adds the weight of the body under gravity g (m/s2) to the dead load. */
 void model_add_gravity(struct fe_model *model, const double gravity[3]);

@@ -242,7 +242,7 @@ static json_t *statistics_object(const struct result *r, double wall_s, double c
   const struct fe_statistics *s = &r->model->statistics;
   struct rusage usage;
   getrusage(RUSAGE_SELF, &usage);
-  struct ldlt_statistics l = ldlt_statistics(r->model->ldlt);
+  struct ldlt_statistics l = r->model->factor;
   return json_pack(
       "{s:i, s:i, s:i, s:i, s:i, s:i, s:b, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}",
       "analyses", s->analyses, "unknowns", r->model->dof_count, "elements",
