@@ -1,0 +1,19 @@
+/* Whether a deformed body holds points of its own surface, found from the elements alone: nothing
+ * of the solver's contact is used. */
+#ifndef PNEULAB_TESTS_PHYSICS_INSIDE_H
+#define PNEULAB_TESTS_PHYSICS_INSIDE_H
+
+#include "solver/fe/model.h"
+
+/* Depth (m) of x below the surface of the body displaced by u, 0 outside of it. Elements that
+ * contain `node` (-1: none) and `element` (-1: none) do not count. */
+double inside_depth(const struct mesh *mesh, const double *u, const double x[3], int node,
+                    int element);
+
+/* Largest depth of the nodes of the outer surface and base that lie in sections from .. to. */
+double inside_nodes(const struct mesh *mesh, const double *u, int from, int to);
+
+/* The same of the Gauss points of the faces whose middle lies in those sections. */
+double inside_points(const struct fe_model *model, const double *u, int from, int to);
+
+#endif
