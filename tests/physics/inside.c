@@ -1,5 +1,6 @@
 #include "tests/physics/inside.h"
 
+#include <check.h>
 #include <math.h>
 #include <stdlib.h>
 #include "solver/fe/box_tree.h"
@@ -49,16 +50,29 @@ static bool holds(double nodes[HEX27_NODES][3], const double x[3]) {
 static bool inside_element(const struct mesh *mesh, const double *u, int element, int node,
                            const double x[3]) {
   double nodes[HEX27_NODES][3];
-  struct box box = box_empty();
   for (int a = 0; a < HEX27_NODES; a++) {
     int n = mesh->element_nodes[HEX27_NODES * element + a];
     if (n == node) {
       return false;
     }
     node_position(mesh, u, n, nodes[a]);
-    box_include(&box, nodes[a]);
   }
-  return box_holds(&box, x) && holds(nodes, x);
+  return holds(nodes, x);
+}
+
+/* Boxes around the nodes of every element; an element does not reach far beyond its nodes. */
+static struct box *element_boxes(const struct mesh *mesh, const double *u) {
+  struct box *boxes = malloc(sizeof *boxes * ((size_t)mesh->element_count + 1));
+  ck_assert_ptr_nonnull(boxes);
+  for (int e = 0; e < mesh->element_count; e++) {
+    boxes[e] = box_empty();
+    for (int a = 0; a < HEX27_NODES; a++) {
+      double x[3];
+      node_position(mesh, u, mesh->element_nodes[HEX27_NODES * e + a], x);
+      box_include(&boxes[e], x);
+    }
+  }
+  return boxes;
 }
 
 /* Distance of x from a face: the nearest of a raster of points, in a window that shrinks. */
@@ -107,11 +121,13 @@ static bool has_node(const struct mesh *mesh, const struct mesh_face *face, int 
   return found;
 }
 
-double inside_depth(const struct mesh *mesh, const double *u, const double x[3], int node,
-                    int element) {
+/* Depth of x below the surface, 0 outside. Elements that contain `node` (-1: none), and `element`
+ * (-1: none), do not count. */
+static double depth_of(const struct mesh *mesh, const double *u, const struct box *boxes,
+                       const double x[3], int node, int element) {
   bool inside = false;
   for (int e = 0; e < mesh->element_count && !inside; e++) {
-    inside = e != element && inside_element(mesh, u, e, node, x);
+    inside = e != element && box_holds(&boxes[e], x) && inside_element(mesh, u, e, node, x);
   }
   double depth = inside ? INFINITY : 0;
   for (int f = 0; f < mesh->face_count && inside; f++) {
@@ -131,8 +147,10 @@ static bool in_sections(const struct mesh *mesh, int node, int from, int to) {
 
 double inside_nodes(const struct mesh *mesh, const double *u, int from, int to) {
   unsigned char *seen = calloc((size_t)mesh->node_count, 1);
-  double deepest = seen ? 0 : INFINITY;
-  for (int f = 0; f < mesh->face_count && seen; f++) {
+  struct box *boxes = element_boxes(mesh, u);
+  double deepest = 0;
+  ck_assert_ptr_nonnull(seen);
+  for (int f = 0; f < mesh->face_count; f++) {
     int nodes[QUAD9_NODES];
     mesh_face_nodes(mesh, &mesh->faces[f], nodes);
     for (int a = 0; a < QUAD9_NODES && is_outside(&mesh->faces[f]); a++) {
@@ -140,17 +158,19 @@ double inside_nodes(const struct mesh *mesh, const double *u, int from, int to) 
       if (!seen[n] && in_sections(mesh, n, from, to)) {
         double x[3];
         node_position(mesh, u, n, x);
-        deepest = fmax(deepest, inside_depth(mesh, u, x, n, -1));
+        deepest = fmax(deepest, depth_of(mesh, u, boxes, x, n, -1));
         seen[n] = 1;
       }
     }
   }
+  free(boxes);
   free(seen);
   return deepest;
 }
 
 double inside_points(const struct fe_model *model, const double *u, int from, int to) {
   const struct mesh *mesh = model->mesh;
+  struct box *boxes = element_boxes(mesh, u);
   double deepest = 0;
   for (int f = 0; f < mesh->face_count; f++) {
     int nodes[QUAD9_NODES];
@@ -164,8 +184,9 @@ double inside_points(const struct fe_model *model, const double *u, int from, in
           x[i] += model->quad9.n[q][a] * y[i];
         }
       }
-      deepest = fmax(deepest, inside_depth(mesh, u, x, -1, mesh->faces[f].element));
+      deepest = fmax(deepest, depth_of(mesh, u, boxes, x, -1, mesh->faces[f].element));
     }
   }
+  free(boxes);
   return deepest;
 }

@@ -5,12 +5,8 @@
 
 #include "solver/fe/model.h"
 
-/* Depth (m) of x below the surface of the body displaced by u, 0 outside of it. Elements that
- * contain `node` (-1: none) and `element` (-1: none) do not count. */
-double inside_depth(const struct mesh *mesh, const double *u, const double x[3], int node,
-                    int element);
-
-/* Largest depth of the nodes of the outer surface and base that lie in sections from .. to. */
+/* Largest depth (m) below the surface of the body displaced by u, among the nodes of the outer
+ * surface and base that lie in sections from .. to; 0 when all are outside. */
 double inside_nodes(const struct mesh *mesh, const double *u, int from, int to);
 
 /* The same of the Gauss points of the faces whose middle lies in those sections. */

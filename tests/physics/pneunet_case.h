@@ -7,6 +7,13 @@
 
 enum { CASE_RECORDS = 40 };
 
+/* The sanitizers slow the assembly down several times: tests then do with less. */
+#ifdef __SANITIZE_ADDRESS__
+enum { SANITIZED = 1 };
+#else
+enum { SANITIZED = 0 };
+#endif
+
 struct pneunet_case {
   struct job_spec spec;
   struct mesh mesh;

@@ -7,13 +7,6 @@
 #include "tests/physics/report.h"
 #include "tests/unit/suite.h"
 
-/* Address sanitizer slows the assembly down several times. */
-#ifdef __SANITIZE_ADDRESS__
-enum { SANITIZED = 1 };
-#else
-enum { SANITIZED = 0 };
-#endif
-
 /* A coarse body for questions that do not depend on the mesh. */
 static void coarse_spec(struct job_spec *spec, int chambers, double pressure, int steps) {
   case_prototype(spec, chambers);

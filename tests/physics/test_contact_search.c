@@ -20,8 +20,8 @@ static const struct variation variations[] = {
     {"stiffness x 0.3", 0.3, 1, 1, 1},
     {"stiffness x 3", 3, 1, 1, 1},
     {"smoothing x 0.5", 1, 0.5, 1, 1},
-    {"smoothing x 2", 1, 2, 1, 1},
     {"reach x 0.5", 1, 1, 0.5, 1},
+    {"smoothing x 2", 1, 2, 1, 1},
     {"reach x 2", 1, 1, 2, 1},
     {"traction tolerance x 0.3", 1, 1, 1, 0.3},
 };
@@ -268,7 +268,7 @@ static int changed_partner(const struct legs *legs) {
 /* One leg pushes the other far down: their faces slide past each other's edges. */
 START_TEST(sliding_faces_change_partner) {
   double tip[3];
-  for (int k = 0; k < 3; k++) {
+  for (int k = 0; k < (SANITIZED ? 2 : 3); k++) {
     struct legs legs;
     const struct legs_shape shape = {
         .facing = k != 1, .gap = 0.1, .along = k == 2 ? 16 : 8, .upper = 1e-2};
@@ -284,7 +284,9 @@ START_TEST(sliding_faces_change_partner) {
     legs_close(&legs);
   }
   report_check("sliding legs, found by search, m", "8 along a leg", tip[0], tip[1], 1e-3);
-  report_check("sliding legs, against a finer mesh, m", "8 along a leg", tip[2], tip[0], 5e-3);
+  if (!SANITIZED) {
+    report_check("sliding legs, against a finer mesh, m", "8 along a leg", tip[2], tip[0], 5e-3);
+  }
 }
 END_TEST
 

@@ -170,7 +170,7 @@ START_TEST(limit_does_not_depend_on_steps) {
     int steps;
   } paths[] = {{20e3, 10}, {20e3, 1}, {8e3, 10}, {50e3, 20}, {6e3, 3}};
   double first = 0;
-  for (int k = 0; k < 5; k++) {
+  for (int k = 0; k < (SANITIZED ? 3 : 5); k++) {
     char name[60];
     double limit = limit_of(1, paths[k].pressure, paths[k].steps);
     first = k == 0 ? limit : first;
@@ -186,14 +186,18 @@ END_TEST
 
 /* The same job gives the same numbers, to the last bit, on its way through contact and arc. */
 START_TEST(paths_repeat_to_the_last_bit) {
-  struct trace t[2] = {{.count = 0}, {.count = 0}};
+  struct trace t[2] = {{.cancel_at = 12}, {.cancel_at = 12}};
   struct pneunet_case c[2];
   for (int k = 0; k < 2; k++) {
     struct job_spec spec;
     struct error error;
     soft_spec(&spec, 2, 8e3, 4);
     case_open(&c[k], &spec);
-    ck_assert_int_eq(follow(&c[k], &t[k], &error), STATUS_LIMIT_POINT);
+    c[k].solver->options.cancelled = enough;
+    c[k].solver->options.cancel_context = &t[k];
+    ck_assert_int_eq(follow(&c[k], &t[k], &error), STATUS_CANCELLED);
+    ck_assert(t[k].arc[t[k].count - 1]);
+    ck_assert_int_gt(contact_summarise(&c[k].model->contact).active, 0);
   }
   const struct mesh *mesh = &c[0].mesh;
   ck_assert_int_eq(t[0].count, t[1].count);
@@ -258,7 +262,7 @@ START_TEST(sphere_reaches_its_limit_pressure) {
   struct error error = {0};
   struct verify_run run = {.refinement = 1};
   double top = 0, exact = sphere_limit(&spheres[_i].material);
-  ck_assert_int_eq(inflation_open(&sphere, &inflation_sphere, &spheres[_i].material, 3, 3, &error),
+  ck_assert_int_eq(inflation_open(&sphere, &inflation_sphere, &spheres[_i].material, 2, 2, &error),
                    STATUS_OK);
   ck_assert_int_eq(equilibrium_create(sphere.body.model, &solver, &error), STATUS_OK);
   struct path_options path = {
@@ -266,7 +270,7 @@ START_TEST(sphere_reaches_its_limit_pressure) {
   enum status status = path_follow(solver, &path, &sphere.body.state, &error);
   printf("%s: %s\n", spheres[_i].name, error.message);
   ck_assert_int_eq(status, STATUS_LIMIT_POINT);
-  report_check(spheres[_i].name, "3 through the wall, 3 x 3 x 3 around", exact, top, 5e-3);
+  report_check(spheres[_i].name, "2 through the wall, 3 x 2 x 2 around", exact, top, 5e-3);
   equilibrium_destroy(solver);
   verify_body_close(&run, &sphere.body);
 }
@@ -327,12 +331,13 @@ START_TEST(unstable_material_is_the_cause) {
   struct job_spec spec;
   struct pneunet_case c;
   struct error error = {0};
-  case_prototype(&spec, 3);
+  case_prototype(&spec, 2);
   spec.mesh = (struct mesh_spec){1, 1, 1, 1, 1, 1, 1, 1};
+  spec.contact = true;
   spec.load.pressure_to = 200e3;
   spec.material = (struct material_spec){.model = MATERIAL_YEOH,
                                          .terms = 2,
-                                         .c = {0.1e6, -0.05e6},
+                                         .c = {0.1e6, -0.3e6},
                                          .bulk_ratio = 1000,
                                          .density_kg_m3 = 1000};
   case_open(&c, &spec);

@@ -15,7 +15,7 @@
 enum { STEPS = 4 };
 
 static void warm_spec(struct job_spec *spec) {
-  case_prototype(spec, 4);
+  case_prototype(spec, 3);
   spec->mesh = (struct mesh_spec){2, 1, 1, 1, 1, 1, 1, 1};
   spec->contact = true;
   spec->load = (struct load_spec){.pressure_to = 40e3, .steps = STEPS};
@@ -102,7 +102,7 @@ START_TEST(neighbouring_designs) {
   int cold_work = 0, warm_work = 0;
   warm_spec(&spec);
   walk(&spec, NULL, &record, &first);
-  for (int k = 0; k < 6; k++) {
+  for (int k = 0; k < (SANITIZED ? 4 : 6); k++) {
     struct job_spec other = spec;
     struct pneunet_spec *p = &other.pneunet;
     struct walked cold, warm;
@@ -116,14 +116,14 @@ START_TEST(neighbouring_designs) {
     walk(&other, NULL, NULL, &cold);
     bool was_warm = walk(&other, record, NULL, &warm);
     ck_assert_msg(was_warm, "%s was not warm", name[k]);
-    report_check("4 chambers, warm against cold, degrees", name[k], cold.angle[STEPS],
+    report_check("3 chambers, warm against cold, degrees", name[k], cold.angle[STEPS],
                  warm.angle[STEPS], 1e-3);
     check_same(&cold, &warm, 1e-3);
     ck_assert_double_gt(fabs(cold.angle[STEPS] / first.angle[STEPS] - 1), 2e-3);
     cold_work += cold.factorizations;
     warm_work += warm.factorizations;
   }
-  printf("6 neighbours: %d factorisations cold, %d warm\n", cold_work, warm_work);
+  printf("neighbours: %d factorisations cold, %d warm\n", cold_work, warm_work);
   ck_assert_int_lt(warm_work, cold_work);
   path_record_destroy(record);
 }
@@ -131,13 +131,13 @@ END_TEST
 
 /* Other steps and other loads than the record has. */
 START_TEST(other_pressures) {
-  static const double pressure[3] = {30e3, 40e3, 44e3};
+  static const double pressure[2] = {30e3, 44e3};
   struct job_spec spec;
   struct path_record *record;
   struct walked cold, warm;
   warm_spec(&spec);
   walk(&spec, NULL, &record, &cold);
-  for (int k = 0; k < 3; k++) {
+  for (int k = 0; k < 2; k++) {
     spec.load.pressure_to = pressure[k];
     walk(&spec, NULL, NULL, &cold);
     walk(&spec, record, NULL, &warm);
@@ -158,8 +158,8 @@ START_TEST(useless_records) {
   warm_spec(&spec);
   walk(&spec, NULL, &record, &first);
   other = spec;
-  other.pneunet.chamber_count = other.pneunet.runs[0].count = 3;
-  other.pneunet.length = 0.028;
+  other.pneunet.chamber_count = other.pneunet.runs[0].count = 2;
+  other.pneunet.length = 0.018;
   case_open(&c, &other);
   ck_assert(!path_record_fits(record, c.model));
   case_close(&c);
@@ -339,23 +339,24 @@ START_TEST(numbers_that_are_none) {
   static const double bad[3] = {NAN, INFINITY, 1e300};
   struct job_spec spec;
   struct walked cold, warm;
-  case_prototype(&spec, 2);
+  case_prototype(&spec, 1);
   spec.mesh = (struct mesh_spec){1, 1, 1, 1, 1, 1, 1, 1};
   spec.contact = true;
   spec.load = (struct load_spec){.pressure_to = 20e3, .steps = STEPS};
-  walk(&spec, NULL, NULL, &cold);
+  struct path_record *record;
+  walk(&spec, NULL, &record, &cold);
   for (int k = 0; k < 9; k++) {
-    struct path_record *record;
-    walk(&spec, NULL, &record, &cold);
     struct fe_state *last = &record->state[record->count - 1];
-    double *place = k / 3 == 0 ? last->u : k / 3 == 1 ? last->p : record->x;
+    double *place = k / 3 == 0 ? last->u : k / 3 == 1 ? last->p : record->x, kept[60];
+    memcpy(kept, place, sizeof kept);
     for (int d = 0; d < 60; d++) {
       place[d] = bad[k % 3];
     }
     walk(&spec, record, NULL, &warm);
     check_same(&cold, &warm, 1e-3);
-    path_record_destroy(record);
+    memcpy(place, kept, sizeof kept);
   }
+  path_record_destroy(record);
 }
 END_TEST
 
