@@ -25,7 +25,7 @@ static const struct variation variations[] = {
     {"reach x 2", 1, 1, 2, 1},
     {"traction tolerance x 0.3", 1, 1, 1, 0.3},
 };
-enum { VARIATIONS = sizeof variations / sizeof *variations };
+enum { VARIATIONS = SANITIZED ? 4 : sizeof variations / sizeof *variations };
 
 static void vary(struct pneunet_case *c, const struct variation *v) {
   c->model->contact.stiffness *= v->stiffness;
