@@ -11,7 +11,8 @@ enum status result_cause(const struct result *r, enum status status, struct erro
   for (size_t i = 0; i < r->sample_count; i++) {
     reached = fmax(reached, r->sample[i].max_stretch);
   }
-  bool broke = status == STATUS_STEP_MINIMUM || status == STATUS_INVERTED;
+  bool broke =
+      status == STATUS_STEP_MINIMUM || status == STATUS_UNSTABLE_PATH || status == STATUS_INVERTED;
   if (!broke || material_stable_to(&r->spec->material, fmax(reached, 1), &unstable)) {
     return status;
   }
