@@ -63,8 +63,7 @@ void legs_load(struct legs *legs, const struct legs_shape *shape) {
   ck_assert_int_eq(state_create(legs->model, &legs->state), STATUS_OK);
   body_add_traction(legs->model, 1, outer, (double[3]){0, -shape->upper, 0});
   body_add_traction(legs->model, 1, -outer, (double[3]){0, shape->lower, 0});
-  legs->solver->options.traction_tolerance = 1e-4 * (shape->upper + shape->lower);
-  legs->solver->options.step_tolerance = 1e-8;
+  legs->solver->options.traction_tolerance = 1e-3 * (shape->upper + shape->lower);
   struct path_options path = {.pressure_to = 0, .steps = 1, .dead_load = true};
   status = path_follow(legs->solver, &path, &legs->state, &error);
   ck_assert_msg(status == STATUS_OK, "%s", error.message);
