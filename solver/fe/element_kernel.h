@@ -321,14 +321,13 @@ LANES_INLINE double *pack_row(int i, int a, const double *row,
 /* One block row i of the condensed tangent K - C^T (dr/dp)^-1 C. */
 LANES_INLINE double *pack_block(int i, double (*rows)[WIDTH],
                                 double coupling[ELEMENT_PRESSURES][WIDTH],
-                                double inverse[ELEMENT_PRESSURES][ELEMENT_PRESSURES],
-                                double *packed) {
+                                const struct element_internal *internal, double *packed) {
   double tail[TAIL * (TAIL + 1) / 2 + SLACK], *end = packed;
   for (int a = 0; a < HEX27_NODES; a++) {
     double scaled[ELEMENT_PRESSURES] = {0};
     for (int m = 0; m < ELEMENT_PRESSURES; m++) {
       for (int n = 0; n < ELEMENT_PRESSURES; n++) {
-        scaled[m] += inverse[m][n] * coupling[n][HEX27_STRIDE * i + a];
+        scaled[m] += internal->inverse[m][n] * coupling[n][HEX27_STRIDE * i + a];
       }
     }
     if (i == 2 && a == HEX27_NODES - TAIL) {
@@ -345,8 +344,7 @@ LANES_INLINE double *pack_block(int i, double (*rows)[WIDTH],
 
 LANES_INLINE void pack_tangent(const struct hex27_tables *tables, const struct response *r,
                                double coupling[ELEMENT_PRESSURES][WIDTH],
-                               double inverse[ELEMENT_PRESSURES][ELEMENT_PRESSURES],
-                               double *packed) {
+                               const struct element_internal *internal, double *packed) {
   ALIGNED double rows[HEX27_NODES][WIDTH];
   const double(*tangent)[HEX27_STRIDE] = r->tangent;
   for (int a = 0; a < HEX27_NODES; a++) {
@@ -359,7 +357,7 @@ LANES_INLINE void pack_tangent(const struct hex27_tables *tables, const struct r
                           WIDTH);
       }
     }
-    packed = pack_block(i, rows, coupling, inverse, packed);
+    packed = pack_block(i, rows, coupling, internal, packed);
   }
 }
 
@@ -410,7 +408,7 @@ LANES_INLINE bool evaluate(const struct element_geometry *geometry,
       }
     }
     spread(columns, residual, coupling, internal);
-    pack_tangent(geometry->tables, &r, coupling, internal->inverse, packed);
+    pack_tangent(geometry->tables, &r, coupling, internal, packed);
   } else {
     spread(columns, residual, NULL, internal);
   }
