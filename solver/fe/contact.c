@@ -29,7 +29,7 @@ static double contact_law(double eps, double delta, double x, double *slope) {
 /* Traction of a point at its gap, with its gain, and the negative derivative to the gap. */
 double contact_traction(const struct contact *contact, const struct contact_point *point,
                         double *slope) {
-  double eps = point->factor * contact->stiffness, x = point->gap - point->lambda / eps;
+  double eps = contact->stiffness, x = point->gap - point->lambda / eps;
   double traction = contact_law(eps, contact->smoothing, x, slope);
   if (point->gain > 0) {
     *slope *= point->gain;
@@ -41,7 +41,7 @@ double contact_traction(const struct contact *contact, const struct contact_poin
 void contact_follow(struct contact *contact, double cap) {
   for (int i = 0; i < contact->point_count; i++) {
     struct contact_point *point = &contact->point[i];
-    double eps = point->factor * contact->stiffness, slope;
+    double eps = contact->stiffness, slope;
     point->gain = 0;
     if (cap > 0 && point->valid) {
       point->anchor = contact_traction(contact, point, &slope);

@@ -41,7 +41,6 @@ struct contact_point {
   double xi[2];    /* closest point on the master face */
   int pair;        /* its partner, -1 for none; unused by points of planes */
   bool valid;      /* the gap is that of a point on the (slightly extended) partner */
-  double factor;   /* of the stiffness, >= 1: raised where updates of the multiplier creep */
   double gain;     /* 0, or how much faster the traction changes: see contact_follow */
   double anchor;   /* with a gain: the traction about which it changes faster, Pa */
 };
@@ -67,7 +66,6 @@ struct contact {
   double stiffness;                   /* eps, Pa/m */
   double smoothing;                   /* delta, m */
   double reach;                       /* distance at which faces begin to be watched, m */
-  int updates;                        /* of the multipliers since contact_reset_factors */
   struct contact_search_data *search; /* owned by contact_search */
 };
 
@@ -124,13 +122,9 @@ struct contact_summary contact_summarise(const struct contact *contact);
 
 /* Moves the multipliers towards the tractions: lambda <- max(0, lambda + w (t - lambda)).
  * *relaxation is w: 0 on entry starts a sequence of updates with w = 1; later calls extrapolate
- * the sequence by Aitken's rule for vectors (Irons, Tuck 1969), 1 <= w <= 10, and raise the
- * stiffness of single points that hardly come nearer, as confined ones do, fourfold. Returns the
- * largest |t - lambda| before the update in Pa. */
+ * the sequence by Aitken's rule for vectors (Irons, Tuck 1969), 1 <= w <= 10. Returns the largest
+ * |t - lambda| before the update in Pa. */
 double contact_update_multipliers(struct contact *contact, double *relaxation);
-
-/* Gives all points their ordinary stiffness back. */
-void contact_reset_factors(struct contact *contact);
 
 /* Prepares for derivatives of a state whose multipliers have settled. There they follow the
  * tractions, d lambda = dt, so that the traction changes 1 / (1 - slope/eps) times as fast as with

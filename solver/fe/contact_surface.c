@@ -5,11 +5,6 @@
 #include "solver/fe/contact_internal.h"
 #include "solver/fe/vec3.h"
 
-/* Updates before a point is taken to creep. */
-enum { PATIENCE = 4 };
-/* Largest factor of the stiffness of a point. */
-static const double factor_max = 256;
-
 /* Reference areas of the 9 points of every face, from `point` on. */
 static void fill_points(const struct contact *contact, struct contact_point *point) {
   for (int f = 0; f < contact->face_count; f++) {
@@ -27,7 +22,6 @@ static void fill_points(const struct contact *contact, struct contact_point *poi
       *point++ =
           (struct contact_point){.area = contact->tables->weight[q] * vec3_norm(normal),
                                  .xi = {contact->tables->point[q][0], contact->tables->point[q][1]},
-                                 .factor = 1,
                                  .pair = -1};
     }
   }
@@ -186,32 +180,14 @@ static double aitken_factor(const struct contact *contact, double last_factor) {
   return fmax(1, fmin(10, factor));
 }
 
-void contact_reset_factors(struct contact *contact) {
-  contact->updates = 0;
-  for (int i = 0; i < contact->point_count; i++) {
-    contact->point[i].factor = 1;
-  }
-}
-
-/* A closed point whose gap has hardly shrunk since the last update. */
-static bool creeps(const struct contact_point *point, double change) {
-  return point->traction > 0 && fabs(change) > 0.5 * fabs(point->change) &&
-         change * point->change > 0 && point->factor < factor_max;
-}
-
 double contact_update_multipliers(struct contact *contact, double *relaxation) {
   double largest = 0;
   *relaxation = *relaxation > 0 ? aitken_factor(contact, *relaxation) : 1;
   for (int i = 0; i < contact->point_count; i++) {
     struct contact_point *point = &contact->point[i];
-    double change = point->traction - point->lambda;
-    if (contact->updates >= PATIENCE && creeps(point, change)) {
-      point->factor *= 4;
-    }
-    point->change = change;
-    largest = fmax(largest, fabs(change));
-    point->lambda = fmax(0, point->lambda + *relaxation * change);
+    point->change = point->traction - point->lambda;
+    largest = fmax(largest, fabs(point->change));
+    point->lambda = fmax(0, point->lambda + *relaxation * point->change);
   }
-  contact->updates++;
   return largest;
 }

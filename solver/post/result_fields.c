@@ -42,11 +42,11 @@ json_t *result_warnings(const struct result *r) {
         list, json_sprintf("this run reached a stretch of %.3f; the material was fitted up to %.3f",
                            reached, m->fit_stretch_max));
   }
-  if (r->penetration > 0.02 * wall) {
+  if (r->penetration > 0.005 * wall) {
     json_array_append_new(
         list,
         json_sprintf(r->spec->contact
-                         ? "the surfaces overlap by %.3f mm, more than 2 %% of the thinnest wall"
+                         ? "the surfaces overlap by %.3f mm, more than 0.5 %% of the thinnest wall"
                          : "contact is off and chambers overlap by %.3f mm",
                      1e3 * r->penetration));
   }
