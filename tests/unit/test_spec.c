@@ -223,55 +223,6 @@ START_TEST(the_hash_does_not_depend_on_order_or_spaces) {
 }
 END_TEST
 
-/* ---- other kinds ------------------------------------------------------------------------ */
-
-static enum status read_verify(const char *text, struct job_spec *spec, struct error *error) {
-  return job_spec_read(text, strlen(text), spec, error);
-}
-
-START_TEST(verification_is_read) {
-  struct job_spec spec;
-  struct error error = {.status = STATUS_OK};
-  ck_assert_int_eq(read_verify("{\"kind\":\"verify\",\"case\":\"elastica\"}", &spec, &error),
-                   STATUS_OK);
-  ck_assert_int_eq(spec.kind, JOB_VERIFY);
-  ck_assert_str_eq(spec.name, "unnamed");
-  ck_assert_str_eq(spec.verify.name, "elastica");
-  ck_assert_int_eq(spec.verify.refinement, 3);
-  check_near(spec.timeout_s, 600.0);
-  char hash[sizeof spec.hash];
-  memcpy(hash, spec.hash, sizeof hash);
-  ck_assert_int_eq(read_verify("{\"kind\":\"verify\",\"name\":\"n\",\"case\":\"elastica\","
-                               "\"refinement\":3,\"timeout\":\"10 min\",\"comment\":\"c\"}",
-                               &spec, &error),
-                   STATUS_OK);
-  ck_assert_str_eq(spec.hash, hash);
-  ck_assert_int_eq(
-      read_verify("{\"kind\":\"verify\",\"case\":\"elastica\",\"refinement\":2}", &spec, &error),
-      STATUS_OK);
-  ck_assert_str_ne(spec.hash, hash);
-}
-END_TEST
-
-static const struct {
-  const char *text, *pointer, *message;
-} bad_verifications[] = {
-    {"{\"kind\":\"verify\"}", "", "the key \"case\" is missing"},
-    {"{\"kind\":\"verify\",\"case\":\"elastic\"}", "/case", "did you mean \"elastica\"?"},
-    {"{\"kind\":\"verify\",\"case\":\"elastica\",\"refinement\":0}", "/refinement", "1"},
-    {"{\"kind\":\"verify\",\"case\":\"elastica\",\"refinement\":5}", "/refinement", "4"},
-    {"{\"kind\":\"verify\",\"case\":\"elastica\",\"material\":\"elastic-50a\"}", "/material", ""},
-};
-
-START_TEST(bad_verifications_are_refused) {
-  struct job_spec spec;
-  struct error error = {.status = STATUS_OK};
-  ck_assert_int_eq(read_verify(bad_verifications[_i].text, &spec, &error), STATUS_INVALID);
-  ck_assert_str_eq(error.pointer, bad_verifications[_i].pointer);
-  ck_assert_msg(strstr(error.message, bad_verifications[_i].message) != NULL, "%s", error.message);
-}
-END_TEST
-
 /* ---- errors ----------------------------------------------------------------------------- */
 
 static const struct refusal refusals[] = {
@@ -489,9 +440,6 @@ int main(void) {
   tcase_add_test(tcase, the_hash_overlooks_what_only_people_read);
   tcase_add_test(tcase, the_hash_sees_every_dimension);
   tcase_add_test(tcase, the_hash_does_not_depend_on_order_or_spaces);
-  tcase_add_test(tcase, verification_is_read);
-  tcase_add_loop_test(tcase, bad_verifications_are_refused, 0,
-                      sizeof bad_verifications / sizeof *bad_verifications);
   tcase_add_loop_test(tcase, refuses, 0, sizeof refusals / sizeof *refusals);
   tcase_add_test(tcase, errors_have_a_place_in_the_text);
   tcase_add_test(tcase, text_that_is_no_job);
