@@ -9,10 +9,13 @@
 enum {
   STALL_ITERATIONS = 5, /* give up after so many without a smaller correction */
   BACKTRACKS = 5,
-  AUGMENTATIONS = 16,
+  AUGMENTATIONS = 30,
+  PATIENCE = 6, /* updates before swinging tractions are put up with */
   CHORD_STEPS = 12
 };
 
+/* No body is asked to rest more exactly than this, in longest steps. */
+static const double finest_step = 1e-7;
 /* Overlap, in thicknesses of the thinnest wall, and movement, in step tolerances, that are put up
  * with while multipliers do not settle. */
 static const double penetration_tolerance = 0.004, last_penetration = 0.015, still_moves = 30;
@@ -301,12 +304,13 @@ static enum status rebalance(struct equilibrium *s, struct fe_load *load, struct
 /* Whether the contact has settled: the last update did not move the body, and it changed the
  * tractions little, or, where more points touch than the surfaces can keep apart at once, so that
  * single tractions go on changing, the overlap is small. */
-static bool settled(const struct equilibrium *s, double change) {
+static bool settled(const struct equilibrium *s, double change, int updates) {
   double overlap = contact_summarise(&s->model->contact).penetration;
   double tolerance = s->options.traction_tolerance;
   bool still = s->moved < still_moves * s->options.step_tolerance;
-  bool apart = overlap < penetration_tolerance * s->model->mesh->wall_thickness;
-  return change < 1e-3 * tolerance || (still && (change < tolerance || apart));
+  bool apart =
+      updates >= PATIENCE && overlap < penetration_tolerance * s->model->mesh->wall_thickness;
+  return change < 0.1 * tolerance || (still && (change < tolerance || apart));
 }
 
 /* Raises the contact multipliers to the tractions until they settle; the factor stays frozen
@@ -314,20 +318,20 @@ static bool settled(const struct equilibrium *s, double change) {
 static enum status augment(struct equilibrium *s, struct fe_load *load, struct fe_state *state,
                            int *iterations) {
   struct fe_model *m = s->model;
-  double relaxation = 0;
+  double relaxation = 0, change = INFINITY;
   s->moved = INFINITY;
   for (int k = 0; k < AUGMENTATIONS; k++) {
     enum status status = meet(s, load, state);
     if (status != STATUS_OK) {
       return status;
     }
-    double change = contact_update_multipliers(&m->contact, &relaxation);
+    change = contact_update_multipliers(&m->contact, &relaxation);
     if (s->verbose) {
       struct contact_summary c = contact_summarise(&m->contact);
       fprintf(stderr, "    augmentation %d: change %.3e Pa, overlap %.3e m, moved %.3e m\n", k,
               change, c.penetration, s->moved);
     }
-    if (settled(s, change)) {
+    if (settled(s, change, k)) {
       return STATUS_OK;
     }
     s->moved = 0;
@@ -337,11 +341,10 @@ static enum status augment(struct equilibrium *s, struct fe_load *load, struct f
     }
   }
   /* A body at rest with a little more overlap is an answer, with a warning in the result. */
-  return s->moved < still_moves * s->options.step_tolerance &&
-                 contact_summarise(&m->contact).penetration <
-                     last_penetration * m->mesh->wall_thickness
-             ? STATUS_OK
-             : STATUS_CONTACT;
+  bool rests =
+      s->moved < still_moves * s->options.step_tolerance &&
+      contact_summarise(&m->contact).penetration < last_penetration * m->mesh->wall_thickness;
+  return rests || change < s->options.traction_tolerance ? STATUS_OK : STATUS_CONTACT;
 }
 
 /* Multipliers to start from: those of the state, carried on at the rate of the last step. */

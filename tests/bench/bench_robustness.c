@@ -1,5 +1,6 @@
 /* How many of many different designs the solver carries to the end, and at what cost.
  *   bench_robustness [--count N] [--seed N] [--accuracy fast|standard|fine] [--steps N]
+ * [--estimate]
  *                    [--jobs N] [--limit CPU_SECONDS] [--only I] [--keep DIR] [--solver PATH]
  *                    [--json FILE]
  * Designs and jobs are those of robust_design.h; each is solved by a process of its own. */
@@ -289,17 +290,13 @@ done:
 }
 
 static bool parse(int argc, char **argv, struct arguments *a) {
-  static const struct option options[] = {{"count", required_argument, NULL, 'c'},
-                                          {"seed", required_argument, NULL, 's'},
-                                          {"accuracy", required_argument, NULL, 'a'},
-                                          {"steps", required_argument, NULL, 'n'},
-                                          {"jobs", required_argument, NULL, 'p'},
-                                          {"limit", required_argument, NULL, 'l'},
-                                          {"only", required_argument, NULL, 'o'},
-                                          {"keep", required_argument, NULL, 'k'},
-                                          {"solver", required_argument, NULL, 'S'},
-                                          {"json", required_argument, NULL, 'j'},
-                                          {0}};
+  static const struct option options[] = {
+      {"count", required_argument, NULL, 'c'},    {"seed", required_argument, NULL, 's'},
+      {"accuracy", required_argument, NULL, 'a'}, {"steps", required_argument, NULL, 'n'},
+      {"jobs", required_argument, NULL, 'p'},     {"limit", required_argument, NULL, 'l'},
+      {"only", required_argument, NULL, 'o'},     {"keep", required_argument, NULL, 'k'},
+      {"solver", required_argument, NULL, 'S'},   {"json", required_argument, NULL, 'j'},
+      {"estimate", no_argument, NULL, 'e'},       {0}};
   int option;
   while ((option = getopt_long(argc, argv, "", options, NULL)) != -1) {
     switch (option) {
@@ -329,6 +326,9 @@ static bool parse(int argc, char **argv, struct arguments *a) {
       break;
     case 'S':
       a->solver = optarg;
+      break;
+    case 'e':
+      a->design.estimate = true;
       break;
     case 'j':
       a->json = optarg;

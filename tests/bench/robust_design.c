@@ -75,11 +75,12 @@ json_t *robust_job(const struct robust_options *options, int index,
       quantity(place, ROBUST_SIDE_WALL, "mm"), "gap_wall", quantity(place, ROBUST_GAP_WALL, "mm"),
       "top_wall", quantity(place, ROBUST_TOP_WALL, "mm"), "bottom_layer",
       quantity(place, ROBUST_BOTTOM_LAYER, "mm"), "taper", taper);
-  return json_pack("{s:s, s:o, s:{s:s}, s:o, s:s, s:{s:{s:s, s:i}}, s:b, s:s}", "kind", "response",
-                   "name", json_sprintf("robustness %d", index), "labels", "study", "robustness",
-                   "actuator", actuator, "material", materials[(int)value(place, ROBUST_MATERIAL)],
-                   "load", "pressure", "to", "60 kPa", "steps", options->steps, "contact", 1,
-                   "accuracy", options->accuracy);
+  return json_pack("{s:s, s:o, s:{s:s}, s:o, s:s, s:{s:{s:s, s:i}}, s:b, s:s, s:b}", "kind",
+                   "response", "name", json_sprintf("robustness %d", index), "labels", "study",
+                   "robustness", "actuator", actuator, "material",
+                   materials[(int)value(place, ROBUST_MATERIAL)], "load", "pressure", "to",
+                   "60 kPa", "steps", options->steps, "contact", 1, "accuracy", options->accuracy,
+                   "error_estimate", options->estimate);
 }
 
 /* Whether the body exists and leaves a cavity worth the name at the tip. */

@@ -30,6 +30,7 @@ struct robust_options {
   uint64_t seed;
   const char *accuracy; /* of the jobs */
   int steps;            /* recorded pressures */
+  bool estimate;        /* with error estimates */
 };
 
 /* Fills place[count][ROBUST_FACTORS] with a Latin hypercube in [0, 1): in every column each of
