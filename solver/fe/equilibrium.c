@@ -14,11 +14,11 @@ enum {
   CHORD_STEPS = 12
 };
 
-/* No body is asked to rest more exactly than this, in longest steps. */
-static const double finest_step = 1e-7;
-/* Overlap, in thicknesses of the thinnest wall, and movement, in step tolerances, that are put up
- * with while multipliers do not settle. */
-static const double penetration_tolerance = 0.004, last_penetration = 0.015, still_moves = 30;
+/* Overlap, in thicknesses of the thinnest wall, that is put up with when multipliers do not settle:
+ * anyway, and while the body rests. */
+static const double little_overlap = 0.002, most_overlap = 0.015;
+/* Movement of a body at rest, in step tolerances. */
+static const double still_moves = 30;
 
 /* Root mean square nodal length of a vector of unknowns. */
 static double rms(const struct equilibrium *s, const double *v) {
@@ -305,12 +305,12 @@ static enum status rebalance(struct equilibrium *s, struct fe_load *load, struct
  * tractions little, or, where more points touch than the surfaces can keep apart at once, so that
  * single tractions go on changing, the overlap is small. */
 static bool settled(const struct equilibrium *s, double change, int updates) {
-  double overlap = contact_summarise(&s->model->contact).penetration;
-  double tolerance = s->options.traction_tolerance;
-  bool still = s->moved < still_moves * s->options.step_tolerance;
-  bool apart =
-      updates >= PATIENCE && overlap < penetration_tolerance * s->model->mesh->wall_thickness;
-  return change < 0.1 * tolerance || (still && (change < tolerance || apart));
+  const struct equilibrium_options *o = &s->options;
+  bool still = s->moved < still_moves * o->step_tolerance;
+  bool apart = updates >= PATIENCE &&
+               contact_summarise(&s->model->contact).penetration < o->overlap_tolerance;
+  return change < 0.1 * o->traction_tolerance ||
+         (still && (change < o->traction_tolerance || apart));
 }
 
 /* Raises the contact multipliers to the tractions until they settle; the factor stays frozen
@@ -341,10 +341,11 @@ static enum status augment(struct equilibrium *s, struct fe_load *load, struct f
     }
   }
   /* A body at rest with a little more overlap is an answer, with a warning in the result. */
-  bool rests =
-      s->moved < still_moves * s->options.step_tolerance &&
-      contact_summarise(&m->contact).penetration < last_penetration * m->mesh->wall_thickness;
-  return rests || change < s->options.traction_tolerance ? STATUS_OK : STATUS_CONTACT;
+  double overlap = contact_summarise(&m->contact).penetration, wall = m->mesh->wall_thickness;
+  bool still = s->moved < still_moves * s->options.step_tolerance;
+  bool good = change < s->options.traction_tolerance || overlap < little_overlap * wall ||
+              (still && overlap < most_overlap * wall);
+  return good ? STATUS_OK : STATUS_CONTACT;
 }
 
 /* Multipliers to start from: those of the state, carried on at the rate of the last step. */

@@ -11,6 +11,7 @@ struct equilibrium_options {
   double longest_step;       /* largest nodal increment of one iteration, m */
   double step_tolerance;     /* root mean square of the last correction, m */
   double traction_tolerance; /* largest change of a contact multiplier at the end, Pa */
+  double overlap_tolerance;  /* put up with where single tractions do not settle, m; 0: none */
   int max_iterations;
   double deadline_s;                /* on clock_wall_s; 0: none */
   bool (*cancelled)(void *context); /* may be NULL */

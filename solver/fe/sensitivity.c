@@ -54,6 +54,7 @@ static enum status prepare_model(struct sensitivity *s, const struct fe_model *f
   if (status == STATUS_OK) {
     s->length = 4 * s->solver->options.longest_step;
     s->solver->options.step_tolerance = step_tolerance * s->length;
+    s->solver->options.overlap_tolerance = 0;
   }
   return status;
 }
