@@ -179,7 +179,7 @@ static void run_designs(const struct options *o, double (*place)[ROBUST_FACTORS]
 }
 
 int main(int argc, char **argv) {
-  struct options o = {{24, 1, "standard", 4}, 0, 3, 30, NULL};
+  struct options o = {{24, 1, "standard", 4, true}, 0, 3, 30, NULL};
   if (!read_options(argc, argv, &o)) {
     fprintf(stderr, "usage: bench_error [--count N] [--skip N] [--seed N] [--chambers N] "
                     "[--accuracy TIER] [--pressure KPA] [--json FILE]\n");
