@@ -5,6 +5,7 @@
  * FIGURES is the directory of the pictures, which OUTPUT names relative to its own place as
  * "figures/"; RESULTS that of the JSON files. */
 #include "tools/performance.h"
+#include "tools/template.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -97,7 +98,8 @@ void print_machine(FILE *out, const struct figures *figures) {
 }
 
 /* Prints the section of a template's line; false when the line is plain text. */
-static bool print_section(FILE *out, const char *line, const struct figures *figures) {
+static bool print_section(FILE *out, const char *line, const void *context) {
+  const struct figures *figures = context;
   for (size_t k = 0; k < sizeof sections / sizeof *sections; k++) {
     const struct section *s = &sections[k];
     if (strcmp(line, s->line) != 0) {
@@ -114,32 +116,6 @@ static bool print_section(FILE *out, const char *line, const struct figures *fig
   return false;
 }
 
-static bool write_document(const char *template_path, const char *path,
-                           const struct figures *figures) {
-  FILE *in = fopen(template_path, "r");
-  FILE *out = in ? fopen(path, "w") : NULL;
-  if (!out) {
-    perror(in ? path : template_path);
-    if (in) {
-      fclose(in);
-    }
-    return false;
-  }
-  char line[4096];
-  while (fgets(line, sizeof line, in)) {
-    if (!print_section(out, line, figures)) {
-      fputs(line, out);
-    }
-  }
-  bool good = !ferror(in) && !ferror(out);
-  fclose(in);
-  good = fclose(out) == 0 && good;
-  if (!good) {
-    perror(path);
-  }
-  return good;
-}
-
 int main(int argc, char **argv) {
   struct figures figures = {.part = {NULL}};
   if (argc != 5) {
@@ -147,7 +123,7 @@ int main(int argc, char **argv) {
     return EXIT_FAILURE;
   }
   bool good = read_figures(argv[4], &figures) && write_plots(&figures, argv[3]) &&
-              write_document(argv[1], argv[2], &figures);
+              template_fill(argv[1], argv[2], print_section, &figures);
   for (int k = 0; k < FIGURES_COUNT; k++) {
     json_decref(figures.part[k]);
   }

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "server/plot/plot.h"
+#include "tools/template.h"
 
 enum { FIGURE_WIDTH = 560, FIGURE_HEIGHT = 380, RESULTS_MAX = 100 };
 
@@ -190,36 +191,19 @@ static bool read_results(int count, char **paths, struct results *results) {
   return true;
 }
 
-static bool write_document(const char *template_path, const char *path,
-                           const struct results *results) {
-  FILE *in = fopen(template_path, "r");
-  FILE *out = in ? fopen(path, "w") : NULL;
-  if (!out) {
-    perror(in ? path : template_path);
-    if (in) {
-      fclose(in);
-    }
+static bool print_section(FILE *out, const char *line, const void *context) {
+  const struct results *results = context;
+  if (strcmp(line, "@SUMMARY@\n") == 0) {
+    print_summary(out, results);
+    return true;
+  }
+  if (strcmp(line, "@CASES@\n") != 0) {
     return false;
   }
-  char line[4096];
-  while (fgets(line, sizeof line, in)) {
-    if (strcmp(line, "@SUMMARY@\n") == 0) {
-      print_summary(out, results);
-    } else if (strcmp(line, "@CASES@\n") == 0) {
-      for (int i = 0; i < results->count; i++) {
-        print_case(out, results->document[i]);
-      }
-    } else {
-      fputs(line, out);
-    }
+  for (int i = 0; i < results->count; i++) {
+    print_case(out, results->document[i]);
   }
-  bool good = !ferror(in) && !ferror(out);
-  fclose(in);
-  good = fclose(out) == 0 && good;
-  if (!good) {
-    perror(path);
-  }
-  return good;
+  return true;
 }
 
 int main(int argc, char **argv) {
@@ -229,7 +213,7 @@ int main(int argc, char **argv) {
   }
   struct results results = {.count = 0};
   bool good = read_results(argc - 4, argv + 4, &results) && write_figures(&results, argv[3]) &&
-              write_document(argv[1], argv[2], &results);
+              template_fill(argv[1], argv[2], print_section, &results);
   for (int i = 0; i < results.count; i++) {
     json_decref(results.document[i]);
   }
