@@ -1,7 +1,6 @@
 #include "solver/fe/contact.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 #include "solver/fe/contact_internal.h"
 #include "solver/fe/contact_projection.h"

@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include "solver/base/clock.h"
 
@@ -174,7 +173,6 @@ static bool polish(struct equilibrium *s, struct fe_load *load, struct fe_state 
       model_evaluate(m, state, load, false);
       return false;
     }
-    s->last_correction = next;
     s->moved += next;
     /* With a contraction rate the error left is rate / (1 - rate) times the last correction. */
     double rate = isfinite(size) ? fmin(next / size, 0.5) : 0.5;
@@ -200,7 +198,6 @@ static enum status step_and_polish(struct equilibrium *s, struct fe_load *load, 
     fprintf(stderr, "    step %.2e share %.2f negative %d active %d gap %.3e load %.6g\n", size,
             share, s->negative_pivots, c.active, c.min_gap, *load_parameter(s, load));
   }
-  s->last_correction = size;
   s->moved += size;
   *converged = status == STATUS_OK && share == 1 && polish(s, load, state, size, 0.1);
   return status;

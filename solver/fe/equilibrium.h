@@ -42,7 +42,6 @@ struct equilibrium {
   bool factor_fits;     /* the factor is that of the last equilibrium, or next to it */
   int negative_pivots;  /* of the last factorisation */
   int fewest_negative, most_negative; /* over the factorisations of the last solve */
-  double last_correction;             /* rms of the last correction, m */
   double moved; /* sum of the rms of corrections since it was last set to 0, m */
   int verbose;  /* 1: a line an iteration on standard error */
 };

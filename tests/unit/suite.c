@@ -1,6 +1,7 @@
 #include "tests/unit/suite.h"
 
 #include <jansson.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -83,4 +84,19 @@ void suite_check_refusal(const struct refusal *refusal) {
                 refusal->pointer, value, error.message);
   ck_assert_int_ge(error.line, 1);
   ck_assert_int_ge(error.column, 1);
+}
+
+void suite_check_near(double value, double wanted) {
+  ck_assert_msg(fabs(value - wanted) <= 1e-12 * fabs(wanted), "%.15g, not %.15g", value, wanted);
+}
+
+void suite_must_read_edited(const char *const (*edits)[2], struct job_spec *spec) {
+  struct error error = {.status = STATUS_OK};
+  enum status status = suite_read_edited(edits, spec, &error);
+  ck_assert_msg(status == STATUS_OK, "%s: %s", error.pointer, error.message);
+}
+
+void suite_must_read(const char *pointer, const char *value, struct job_spec *spec) {
+  const char *const edits[][2] = {{pointer, value}, {NULL, NULL}};
+  suite_must_read_edited(edits, spec);
 }

@@ -18,6 +18,13 @@ enum status suite_read_changed(const char *pointer, const char *value, struct jo
 enum status suite_read_edited(const char *const (*edits)[2], struct job_spec *spec,
                               struct error *error);
 
+/* The same two, asserting that the job is valid. */
+void suite_must_read(const char *pointer, const char *value, struct job_spec *spec);
+void suite_must_read_edited(const char *const (*edits)[2], struct job_spec *spec);
+
+/* Asserts that the value is the wanted one to a relative 1e-12. */
+void suite_check_near(double value, double wanted);
+
 /* One change that has to be refused. */
 struct refusal {
   const char *pointer, *value; /* as in suite_read_changed */

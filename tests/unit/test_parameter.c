@@ -6,21 +6,6 @@
 #include "solver/job/parameter.h"
 #include "tests/unit/suite.h"
 
-static void check_near(double value, double wanted) {
-  ck_assert_msg(fabs(value - wanted) <= 1e-12 * fabs(wanted), "%.15g, not %.15g", value, wanted);
-}
-
-static void read_edited(const char *const (*edits)[2], struct job_spec *spec) {
-  struct error error = {.status = STATUS_OK};
-  enum status status = suite_read_edited(edits, spec, &error);
-  ck_assert_msg(status == STATUS_OK, "%s: %s", error.pointer, error.message);
-}
-
-static void read_changed(const char *pointer, const char *value, struct job_spec *spec) {
-  const char *const edits[][2] = {{pointer, value}, {NULL, NULL}};
-  read_edited(edits, spec);
-}
-
 /* The parameter of this name, or NULL. */
 static const struct job_parameter *named(const struct job_parameter *list, int count,
                                          const char *pointer) {
@@ -37,7 +22,7 @@ static void set(struct job_spec *spec, const char *pointer, double value) {
   const struct job_parameter *parameter = named(list, parameter_list(spec, list), pointer);
   ck_assert_msg(parameter != NULL, "%s is no parameter", pointer);
   ck_assert_int_eq(parameter_set(spec, parameter, value, NULL), STATUS_OK);
-  check_near(parameter_value(spec, parameter), value);
+  suite_check_near(parameter_value(spec, parameter), value);
 }
 
 START_TEST(what_the_job_gives_is_listed_in_its_units) {
@@ -57,13 +42,13 @@ START_TEST(what_the_job_gives_is_listed_in_its_units) {
   };
   struct job_spec spec;
   struct job_parameter list[PARAMETERS_MAX];
-  read_changed(NULL, NULL, &spec);
+  suite_must_read(NULL, NULL, &spec);
   int count = parameter_list(&spec, list);
   for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
     const struct job_parameter *p = named(list, count, wanted[i].pointer);
     ck_assert_msg(p != NULL, "%s is missing", wanted[i].pointer);
     ck_assert_str_eq(p->unit, wanted[i].unit);
-    check_near(parameter_value(&spec, p) / p->unit_si, wanted[i].value);
+    suite_check_near(parameter_value(&spec, p) / p->unit_si, wanted[i].value);
   }
   /* The walls across follow side_wall, the floor top_wall: the job does not give them. */
   ck_assert_ptr_null(named(list, count, "/actuator/gap_wall"));
@@ -75,11 +60,11 @@ END_TEST
 START_TEST(dimensions_without_effect_are_no_parameters) {
   struct job_spec spec;
   struct job_parameter list[PARAMETERS_MAX];
-  read_changed("/actuator/chambers", "[{\"config\": \"A\", \"count\": 3}]", &spec);
+  suite_must_read("/actuator/chambers", "[{\"config\": \"A\", \"count\": 3}]", &spec);
   int count = parameter_list(&spec, list);
   ck_assert_ptr_null(named(list, count, "/actuator/slit"));
   ck_assert_ptr_null(named(list, count, "/actuator/chamber_gap"));
-  read_changed("/actuator/height", "{\"base\": \"16 mm\", \"tip\": \"15 mm\"}", &spec);
+  suite_must_read("/actuator/height", "{\"base\": \"16 mm\", \"tip\": \"15 mm\"}", &spec);
   count = parameter_list(&spec, list);
   ck_assert_ptr_nonnull(named(list, count, "/actuator/height/tip"));
   ck_assert_ptr_nonnull(named(list, count, "/actuator/taper/left"));
@@ -100,7 +85,7 @@ START_TEST(each_law_has_its_coefficients) {
   };
   struct job_spec spec;
   struct job_parameter list[PARAMETERS_MAX];
-  read_changed("/material", laws[_i].material, &spec);
+  suite_must_read("/material", laws[_i].material, &spec);
   int count = parameter_list(&spec, list);
   ck_assert_ptr_nonnull(named(list, count, laws[_i].first));
   ck_assert_ptr_nonnull(named(list, count, laws[_i].last));
@@ -110,31 +95,31 @@ END_TEST
 
 START_TEST(what_depends_on_a_parameter_follows_it) {
   struct job_spec spec;
-  read_changed(NULL, NULL, &spec);
+  suite_must_read(NULL, NULL, &spec);
   set(&spec, "/actuator/side_wall", 0.0021);
-  check_near(spec.pneunet.gap_wall, 0.0021);
-  check_near(spec.pneunet.stem, 0.0041);
-  check_near(spec.pneunet.length, 0.118);
-  check_near(spec.pneunet.cavity_length, 0.004 - 2e-4);
+  suite_check_near(spec.pneunet.gap_wall, 0.0021);
+  suite_check_near(spec.pneunet.stem, 0.0041);
+  suite_check_near(spec.pneunet.length, 0.118);
+  suite_check_near(spec.pneunet.cavity_length, 0.004 - 2e-4);
   set(&spec, "/actuator/taper/left", 0.03);
   ck_assert(!spec.half_model);
   static const char *const edits[][2] = {
       {"/actuator/length", NULL}, {"/actuator/chamber_length", "\"8 mm\""}, {NULL, NULL}};
-  read_edited(edits, &spec);
+  suite_must_read_edited(edits, &spec);
   set(&spec, "/actuator/chamber_gap", 0.003);
-  check_near(spec.pneunet.cavity_length, 0.004);
-  check_near(spec.pneunet.length, 0.118 + 11 * 0.001);
+  suite_check_near(spec.pneunet.cavity_length, 0.004);
+  suite_check_near(spec.pneunet.length, 0.118 + 11 * 0.001);
 }
 END_TEST
 
 START_TEST(of_two_lengths_the_chamber_counts) {
   struct job_spec spec;
   struct job_parameter list[PARAMETERS_MAX];
-  read_changed("/actuator/chamber_length", "\"8 mm\"", &spec);
+  suite_must_read("/actuator/chamber_length", "\"8 mm\"", &spec);
   int count = parameter_list(&spec, list);
   ck_assert_ptr_null(named(list, count, "/actuator/length"));
   set(&spec, "/actuator/chamber_length", 0.009);
-  check_near(spec.pneunet.length, 0.118 + 12 * 0.001);
+  suite_check_near(spec.pneunet.length, 0.118 + 12 * 0.001);
 }
 END_TEST
 
@@ -142,7 +127,7 @@ START_TEST(an_impossible_value_is_refused) {
   struct job_spec spec;
   struct job_parameter list[PARAMETERS_MAX];
   struct error error;
-  read_changed(NULL, NULL, &spec);
+  suite_must_read(NULL, NULL, &spec);
   const struct job_parameter *wall =
       named(list, parameter_list(&spec, list), "/actuator/side_wall");
   ck_assert_int_eq(parameter_set(&spec, wall, 0.01, &error), STATUS_GEOMETRY);
@@ -152,16 +137,17 @@ END_TEST
 START_TEST(the_key_chooses_parameters) {
   struct job_spec spec;
   struct job_parameter list[PARAMETERS_MAX];
-  read_changed(NULL, NULL, &spec);
+  suite_must_read(NULL, NULL, &spec);
   ck_assert_int_eq(spec.sensitivity.count, 0);
-  read_changed("/sensitivity", "false", &spec);
+  suite_must_read("/sensitivity", "false", &spec);
   ck_assert_int_eq(spec.sensitivity.count, 0);
-  read_changed("/sensitivity", "true", &spec);
+  suite_must_read("/sensitivity", "true", &spec);
   ck_assert_int_eq(spec.sensitivity.count, parameter_list(&spec, list));
-  read_changed("/sensitivity", "{\"parameters\": [\"/material/C/1\", \"/actuator/width\"]}", &spec);
+  suite_must_read("/sensitivity", "{\"parameters\": [\"/material/C/1\", \"/actuator/width\"]}",
+                  &spec);
   ck_assert_int_eq(spec.sensitivity.count, 2);
   ck_assert_str_eq(spec.sensitivity.parameter[0].pointer, "/material/C/1");
-  check_near(parameter_value(&spec, &spec.sensitivity.parameter[1]), 0.03);
+  suite_check_near(parameter_value(&spec, &spec.sensitivity.parameter[1]), 0.03);
 }
 END_TEST
 

@@ -9,50 +9,35 @@
 
 #define DEGREE (3.14159265358979323846 / 180)
 
-static void check_near(double value, double wanted) {
-  ck_assert_msg(fabs(value - wanted) <= 1e-12 * fabs(wanted), "%.15g, not %.15g", value, wanted);
-}
-
-static void read_edited(const char *const (*edits)[2], struct job_spec *spec) {
-  struct error error = {.status = STATUS_OK};
-  enum status status = suite_read_edited(edits, spec, &error);
-  ck_assert_msg(status == STATUS_OK, "%s: %s", error.pointer, error.message);
-}
-
-static void read_changed(const char *pointer, const char *value, struct job_spec *spec) {
-  const char *const edits[][2] = {{pointer, value}, {NULL, NULL}};
-  read_edited(edits, spec);
-}
-
 START_TEST(lengths_arrive_in_metres_and_defaults_are_filled_in) {
   struct job_spec spec;
-  read_changed(NULL, NULL, &spec);
+  suite_must_read(NULL, NULL, &spec);
   const struct pneunet_spec *p = &spec.pneunet;
-  check_near(p->length, 0.118);
-  check_near(p->cavity_length, 0.004);
-  check_near(p->width, 0.030);
-  check_near(p->height_base, 0.0156);
-  check_near(p->height_tip, 0.0156);
-  check_near(p->side_wall, 0.002);
-  check_near(p->top_wall, 0.0015);
-  check_near(p->bottom_layer, 0.006);
-  check_near(p->taper_left, 2 * DEGREE);
-  check_near(p->taper_right, 2 * DEGREE);
+  suite_check_near(p->length, 0.118);
+  suite_check_near(p->cavity_length, 0.004);
+  suite_check_near(p->width, 0.030);
+  suite_check_near(p->height_base, 0.0156);
+  suite_check_near(p->height_tip, 0.0156);
+  suite_check_near(p->side_wall, 0.002);
+  suite_check_near(p->top_wall, 0.0015);
+  suite_check_near(p->bottom_layer, 0.006);
+  suite_check_near(p->taper_left, 2 * DEGREE);
+  suite_check_near(p->taper_right, 2 * DEGREE);
   ck_assert_int_eq(p->run_count, 2);
   ck_assert_int_eq(p->chamber_count, 12);
   ck_assert_int_eq(p->runs[0].config, CHAMBER_B);
   ck_assert_int_eq(p->runs[0].count, 7);
   ck_assert_int_eq(p->runs[1].config, CHAMBER_C);
   ck_assert_int_eq(p->runs[1].count, 5);
-  check_near(p->chamber_gap, 0.002);
-  check_near(p->gap_wall, 0.002);
-  check_near(p->slit, 0.001);
-  check_near(p->slit_floor, 0.0015);
-  check_near(p->stem, 0.004);
+  suite_check_near(p->chamber_gap, 0.002);
+  suite_check_near(p->gap_wall, 0.002);
+  suite_check_near(p->slit, 0.001);
+  suite_check_near(p->slit_floor, 0.0015);
+  suite_check_near(p->stem, 0.004);
   ck_assert(p->has_channel);
-  check_near(p->channel_width, 0.004);
-  check_near(p->channel_height, 0.002);
-  check_near(p->channel_cover, 0.0015);
+  suite_check_near(p->channel_width, 0.004);
+  suite_check_near(p->channel_height, 0.002);
+  suite_check_near(p->channel_cover, 0.0015);
   ck_assert_double_eq(p->taper_top, 0.0);
   ck_assert_double_eq(p->taper_bottom, 0.0);
 }
@@ -60,10 +45,10 @@ END_TEST
 
 START_TEST(load_and_options_have_defaults) {
   struct job_spec spec;
-  read_changed(NULL, NULL, &spec);
+  suite_must_read(NULL, NULL, &spec);
   ck_assert_int_eq(spec.kind, JOB_RESPONSE);
   ck_assert_str_eq(spec.name, "test");
-  check_near(spec.load.pressure_to, 50e3);
+  suite_check_near(spec.load.pressure_to, 50e3);
   ck_assert_int_eq(spec.load.steps, 10);
   for (int i = 0; i < 3; i++) {
     ck_assert_double_eq(spec.load.gravity[i], 0.0);
@@ -71,14 +56,14 @@ START_TEST(load_and_options_have_defaults) {
   ck_assert(spec.contact);
   ck_assert(spec.half_model);
   ck_assert_int_eq(spec.accuracy, ACCURACY_STANDARD);
-  check_near(spec.timeout_s, 600.0);
+  suite_check_near(spec.timeout_s, 600.0);
   const struct mesh_spec none = {0};
   ck_assert_mem_eq(&spec.mesh, &none, sizeof none);
   ck_assert_double_eq(spec.metrics.fit_from, 0.0);
-  check_near(spec.metrics.fit_to, 50e3);
+  suite_check_near(spec.metrics.fit_to, 50e3);
   ck_assert_double_eq(spec.metrics.cai_from, 0.0);
-  check_near(spec.metrics.cai_to, 50e3);
-  read_changed("/name", NULL, &spec);
+  suite_check_near(spec.metrics.cai_to, 50e3);
+  suite_must_read("/name", NULL, &spec);
   ck_assert_str_eq(spec.name, "unnamed");
 }
 END_TEST
@@ -100,16 +85,16 @@ START_TEST(options_are_read) {
       {"/actuator/gap_shape", "\"rectangular\""},
       {NULL, NULL}};
   struct job_spec spec;
-  read_edited(edits, &spec);
+  suite_must_read_edited(edits, &spec);
   ck_assert(!spec.contact);
   ck_assert_int_eq(spec.accuracy, ACCURACY_FINE);
-  check_near(spec.timeout_s, 7200.0);
-  check_near(spec.load.gravity[2], -9.80665);
+  suite_check_near(spec.timeout_s, 7200.0);
+  suite_check_near(spec.load.gravity[2], -9.80665);
   ck_assert_int_eq(spec.load.steps, 1000);
-  check_near(spec.metrics.fit_from, 1e3);
-  check_near(spec.metrics.fit_to, 6e3);
-  check_near(spec.metrics.cai_from, 2e3);
-  check_near(spec.metrics.cai_to, spec.load.pressure_to);
+  suite_check_near(spec.metrics.fit_from, 1e3);
+  suite_check_near(spec.metrics.fit_to, 6e3);
+  suite_check_near(spec.metrics.cai_from, 2e3);
+  suite_check_near(spec.metrics.cai_to, spec.load.pressure_to);
   const struct mesh_spec mesh = {1, 2, 3, 4, 5, 6, 7, 40};
   ck_assert_mem_eq(&spec.mesh, &mesh, sizeof mesh);
   ck_assert(spec.half_model);
@@ -122,10 +107,10 @@ START_TEST(defaults_follow_from_what_is_given) {
       {"/actuator/side_wall", "\"3 mm\""}, {"/actuator/top_wall", "\"1 mm\""},
       {"/actuator/length", "\"150 mm\""},  {"/actuator/taper", NULL},
       {"/actuator/channel", NULL},         {NULL, NULL}};
-  read_edited(edits, &spec);
-  check_near(spec.pneunet.gap_wall, 0.003);
-  check_near(spec.pneunet.slit_floor, 0.001);
-  check_near(spec.pneunet.stem, 0.006);
+  suite_must_read_edited(edits, &spec);
+  suite_check_near(spec.pneunet.gap_wall, 0.003);
+  suite_check_near(spec.pneunet.slit_floor, 0.001);
+  suite_check_near(spec.pneunet.stem, 0.006);
   ck_assert(!spec.pneunet.has_channel);
   ck_assert_double_eq(spec.pneunet.taper_left, 0.0);
 }
@@ -133,11 +118,11 @@ END_TEST
 
 START_TEST(an_unsymmetric_body_or_load_needs_the_whole_model) {
   struct job_spec spec;
-  read_changed("/actuator/taper/left", "\"1 deg\"", &spec);
+  suite_must_read("/actuator/taper/left", "\"1 deg\"", &spec);
   ck_assert(!spec.half_model);
-  read_changed("/load/gravity", "[0, \"1 m/s2\", 0]", &spec);
+  suite_must_read("/load/gravity", "[0, \"1 m/s2\", 0]", &spec);
   ck_assert(!spec.half_model);
-  read_changed("/load/gravity", "[\"1 m/s2\", 0, \"1 m/s2\"]", &spec);
+  suite_must_read("/load/gravity", "[\"1 m/s2\", 0, \"1 m/s2\"]", &spec);
   ck_assert(spec.half_model);
 }
 END_TEST
@@ -161,12 +146,12 @@ static const struct {
 
 START_TEST(reads_every_law) {
   struct job_spec spec;
-  read_changed("/material", laws[_i].value, &spec);
+  suite_must_read("/material", laws[_i].value, &spec);
   ck_assert_int_eq(spec.material.model, laws[_i].model);
   ck_assert_int_eq(spec.material.terms, laws[_i].terms);
-  check_near(spec.material.c[0], laws[_i].c0);
-  check_near(material_shear_modulus(&spec.material), laws[_i].modulus);
-  check_near(spec.material.density_kg_m3, laws[_i].density);
+  suite_check_near(spec.material.c[0], laws[_i].c0);
+  suite_check_near(material_shear_modulus(&spec.material), laws[_i].modulus);
+  suite_check_near(spec.material.density_kg_m3, laws[_i].density);
   ck_assert_double_eq(spec.material.bulk_ratio, 1000.0);
 }
 END_TEST
@@ -175,8 +160,8 @@ END_TEST
 
 static void check_same_hash(const char *pointer, const char *value, bool same) {
   struct job_spec base, changed;
-  read_changed(NULL, NULL, &base);
-  read_changed(pointer, value, &changed);
+  suite_must_read(NULL, NULL, &base);
+  suite_must_read(pointer, value, &changed);
   ck_assert_uint_eq(strlen(base.hash), 64);
   ck_assert_uint_eq(strspn(base.hash, "0123456789abcdef"), 64);
   ck_assert_msg((strcmp(base.hash, changed.hash) == 0) == same, "%s = %s", pointer, value);
@@ -393,7 +378,7 @@ START_TEST(every_job_file_of_the_project_is_valid) {
   struct error error;
   ck_assert_msg(job_spec_read(text, size, &spec, &error) == STATUS_OK, "%s: %s: %s", name,
                 error.pointer, error.message);
-  check_near(spec.pneunet.length, 0.118);
+  suite_check_near(spec.pneunet.length, 0.118);
   ck_assert_int_eq(spec.pneunet.chamber_count, 12);
   ck_assert(spec.half_model);
 }
