@@ -186,6 +186,7 @@ int main(int argc, char **argv) {
   if (a.run.events) {
     fclose(a.run.events);
   }
+  job_spec_release(&spec);
   if (status != STATUS_OK) {
     return report(&error);
   }

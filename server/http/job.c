@@ -90,7 +90,7 @@ static enum status job_resubmit(const struct service *service, int64_t id, int64
                                 struct error *error) {
   struct store *store = service->store;
   struct job_record record;
-  struct job_spec spec;
+  struct job_spec spec = {.document = NULL};
   struct submission submission = {.retry_of = id};
   json_t *root = NULL;
   char *text = NULL;
@@ -122,6 +122,7 @@ static enum status job_resubmit(const struct service *service, int64_t id, int64
     submission.timeout_s = spec.timeout_s;
     status = store_submit(store, &submission, new_id, &replayed, error);
   }
+  job_spec_release(&spec);
   json_decref(root);
   free(text);
   return status;

@@ -8,7 +8,7 @@
 
 enum { KEY_MAX = 200, LIST_LIMIT = 50, LIST_LIMIT_MAX = 500 };
 
-/* Checks the request's job document. On success *root is the caller's. */
+/* Checks the request's job document. On success *spec and *root are the caller's. */
 static bool document_check(const struct request *request, struct reply *reply,
                            struct job_spec *spec, json_t **root) {
   struct error error = {.status = STATUS_OK};
@@ -18,6 +18,7 @@ static bool document_check(const struct request *request, struct reply *reply,
       json_text_read(text, request->body_size, root, &error) == STATUS_OK) {
     return true;
   }
+  job_spec_release(spec);
   reply_error(reply, &error);
   return false;
 }
@@ -35,7 +36,7 @@ static bool key_read(const struct request *request, struct reply *reply, const c
 
 void jobs_submit(struct request *request, struct reply *reply) {
   struct service *service = request->service;
-  struct job_spec spec;
+  struct job_spec spec = {.document = NULL};
   struct error error;
   struct submission submission = {.document = request->body};
   json_t *root = NULL;
@@ -56,6 +57,7 @@ void jobs_submit(struct request *request, struct reply *reply) {
   submission.timeout_s = spec.timeout_s;
   enum status status = store_submit(service->store, &submission, &id, &replayed, &error);
   json_decref(root);
+  job_spec_release(&spec);
   if (status == STATUS_CONFLICT && submission.idempotency_key) {
     reply_problem(reply, 422, "idempotency_key_reused", "%s", error.message);
     return;
@@ -69,13 +71,14 @@ void jobs_submit(struct request *request, struct reply *reply) {
 }
 
 void jobs_validate(struct request *request, struct reply *reply) {
-  struct job_spec spec;
+  struct job_spec spec = {.document = NULL};
   json_t *root = NULL;
   if (document_check(request, reply, &spec, &root)) {
     reply_json(reply, 200,
                json_pack("{s:b, s:s, s:s}", "valid", 1, "kind",
                          json_string_value(json_object_get(root, "kind")), "spec_hash", spec.hash));
     json_decref(root);
+    job_spec_release(&spec);
   }
 }
 

@@ -133,6 +133,9 @@ enum status model_create(const struct mesh *mesh, const struct material_spec *ma
   double mu = material_shear_modulus(material);
   m->bulk_modulus = material->bulk_ratio * mu;
   m->use_contact = use_contact;
+  for (int c = 0; c < MESH_CAVITIES; c++) {
+    m->cavity_share[c] = 1;
+  }
   hex27_tables_fill(&m->hex27);
   quad9_tables_fill(&m->quad9);
   enum status status = contact_init(&m->contact, mesh, &m->quad9, error);

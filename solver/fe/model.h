@@ -14,7 +14,7 @@ struct fe_state {
 };
 
 struct fe_load {
-  double pressure;           /* on the cavity faces, Pa */
+  double pressure;           /* on the cavity faces, Pa, times cavity_share of the model */
   double stiffness_pressure; /* pressure used in the load's tangent, Pa */
   double dead;               /* factor of the dead load */
 };
@@ -37,6 +37,8 @@ struct fe_model {
   double reference_volume;           /* of the solid, m3 */
   int *cavity_start;                 /* element_count + 1, into cavity_face */
   struct mesh_face *cavity_face;
+  double cavity_share[MESH_CAVITIES]; /* pressure in each cavity relative to that of the load: 1
+                                       * unless the caller sets it before any state is made */
   double *dead_load; /* node_count x 3, N at factor 1; the caller may add to it */
   int dof_count;
   int *equation;         /* node_count x 3, -1 where held */
@@ -108,9 +110,13 @@ void model_multiply(const struct fe_model *model, const double *x, double *y);
 void model_recover(const struct fe_model *model, struct fe_state *state, const double *du,
                    double share);
 
-/* Volume enclosed by the cavity faces, m3 (of the modelled half for a half model). With
- * gradient not NULL: d volume / d u, dof_count. */
+/* The volume that the load's pressure works on: what the cavity faces enclose, each cavity counted
+ * with its cavity_share, m3 (of the modelled half for a half model). With gradient not NULL:
+ * d volume / d u, dof_count. */
 double model_volume(const struct fe_model *model, const struct fe_state *state, double *gradient);
+
+/* The volume of one cavity, m3 (of the modelled half for a half model). */
+double model_cavity_volume(const struct fe_model *model, const struct fe_state *state, int cavity);
 
 /* Displacements of an element's nodes, padded. */
 void model_gather(const struct fe_model *model, const double *u, int element,

@@ -29,11 +29,13 @@ static void add_pressure(const struct fe_model *m, const double *u, const struct
   mesh_face_local_nodes(face->axis, face->side, local);
   face_positions(m, u, face, x);
   pressure_face(&m->quad9, x, face->side, force);
+  double share = m->cavity_share[face->cavity];
   for (int r = 0; r < FACE_DOFS; r++) {
     index[r] = HEX27_NODES * (r % 3) + local[r / 3];
-    residual[index[r]] += load->pressure * force[r];
+    residual[index[r]] += share * load->pressure * force[r];
   }
-  if (!packed || load->stiffness_pressure == 0) {
+  double stiffness_pressure = share * load->stiffness_pressure;
+  if (!packed || stiffness_pressure == 0) {
     return;
   }
   pressure_face_tangent(&m->quad9, x, face->side, tangent);
@@ -41,7 +43,7 @@ static void add_pressure(const struct fe_model *m, const double *u, const struct
     for (int c = 0; c < FACE_DOFS; c++) {
       if (index[r] <= index[c]) {
         packed[model_packed_index(ELEMENT_DOFS, index[r], index[c])] +=
-            load->stiffness_pressure * tangent[FACE_DOFS * r + c];
+            stiffness_pressure * tangent[FACE_DOFS * r + c];
       }
     }
   }
@@ -179,12 +181,25 @@ double model_volume(const struct fe_model *m, const struct fe_state *state, doub
     int nodes[QUAD9_NODES];
     face_positions(m, state->u, face, x);
     mesh_face_nodes(m->mesh, face, nodes);
-    volume += pressure_face(&m->quad9, x, face->side, force);
+    double share = m->cavity_share[face->cavity];
+    volume += share * pressure_face(&m->quad9, x, face->side, force);
     for (int r = 0; gradient && r < FACE_DOFS; r++) {
       int equation = m->equation[3 * nodes[r / 3] + r % 3];
       if (equation >= 0) {
-        gradient[equation] -= force[r];
+        gradient[equation] -= share * force[r];
       }
+    }
+  }
+  return volume;
+}
+
+double model_cavity_volume(const struct fe_model *m, const struct fe_state *state, int cavity) {
+  double volume = 0;
+  for (int f = 0; f < m->cavity_start[m->mesh->element_count]; f++) {
+    double x[QUAD9_NODES][3], force[FACE_DOFS];
+    if (m->cavity_face[f].cavity == cavity) {
+      face_positions(m, state->u, &m->cavity_face[f], x);
+      volume += pressure_face(&m->quad9, x, m->cavity_face[f].side, force);
     }
   }
   return volume;

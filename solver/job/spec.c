@@ -221,6 +221,11 @@ static enum status read_kind(const struct reader *reader, const json_t *document
                                      : read_response(reader, document, spec);
 }
 
+/* Whether the spec alone does not say everything about the job. */
+static bool keeps_document(const struct job_spec *spec) {
+  return spec->kind != JOB_RESPONSE && spec->kind != JOB_VERIFY;
+}
+
 /* ---- the whole document ----------------------------------------------------------------- */
 
 enum status job_reader_read(const struct job_reader *reader, const char *text, size_t size,
@@ -246,10 +251,19 @@ enum status job_reader_read(const struct job_reader *reader, const char *text, s
   }
   if (status != STATUS_OK) {
     json_text_locate(text, size, error->pointer, &error->line, &error->column);
+    goto done;
+  }
+  if (keeps_document(spec)) {
+    spec->document = json_incref(document);
   }
 done:
   json_decref(document);
   return status;
+}
+
+void job_spec_release(struct job_spec *spec) {
+  json_decref(spec->document);
+  *spec = (struct job_spec){.kind = JOB_RESPONSE};
 }
 
 enum status job_spec_read(const char *text, size_t size, struct job_spec *spec,

@@ -2,6 +2,7 @@
 #ifndef PNEULAB_JOB_SPEC_H
 #define PNEULAB_JOB_SPEC_H
 
+#include <jansson.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include "solver/base/error.h"
@@ -150,6 +151,9 @@ struct job_spec {
   double timeout_s;    /* 0: none */
   char hash[65];       /* SHA-256 of the canonical job text: sorted keys, defaults filled in, no
                         * name, labels and comments; 64 hexadecimal digits */
+  json_t *document;    /* of a job whose data have no bound (tables, members of a study) the document
+                        * with its defaults filled in, otherwise NULL; owned by the spec as read,
+                        * borrowed by its copies */
 };
 
 /* What every reading of a job needs: unit database and schema. One reader may be used by several
@@ -161,14 +165,18 @@ struct job_reader;
 enum status job_reader_create(struct job_reader **reader, struct error *error);
 void job_reader_destroy(struct job_reader *reader);
 
-/* job_spec_read with a reader that is kept for the next job. */
+/* Releases what a spec owns and clears it; for the spec that was read, not for its copies. One that
+ * was not read, or not successfully, owns nothing. */
+void job_spec_release(struct job_spec *spec);
+
+/* job_spec_read with a reader that is kept for the next job. The caller releases *spec. */
 enum status job_reader_read(const struct job_reader *reader, const char *text, size_t size,
                             struct job_spec *spec, struct error *error);
 
 /* Reads and checks a job document.
  * text: JSON of `size` bytes. On success fills *spec and returns STATUS_OK; otherwise fills
  * *error (pointer, line and column) and returns STATUS_SYNTAX, INVALID, GEOMETRY or TOO_LARGE;
- * or the failures of job_reader_create. Nothing is kept or owned. */
+ * or the failures of job_reader_create. On success the caller releases *spec. */
 enum status job_spec_read(const char *text, size_t size, struct job_spec *spec,
                           struct error *error);
 

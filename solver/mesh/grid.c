@@ -183,19 +183,22 @@ static void fill_nodes(const struct builder *b, bool half, grid_map_fn map, cons
   }
 }
 
-/* Kind of the boundary face of cell c towards `axis`, `side`; false for an inner face. */
+/* Kind of the boundary face of cell c towards `axis`, `side`, and the cavity it bounds; false for
+ * an inner face. */
 static bool face_kind_of(const struct builder *b, bool half, const int c[3], int axis, int side,
-                         enum face_kind *kind) {
+                         enum face_kind *kind, unsigned char *cavity) {
   int n[3] = {c[0], c[1], c[2]};
   n[axis] += side;
+  *cavity = 0;
   if (!cell_inside(b, n)) {
     *kind = axis == 0 && side < 0           ? FACE_BASE
             : half && axis == 1 && side < 0 ? FACE_SYMMETRY
                                             : FACE_OUTER;
     return true;
   }
-  enum cell_kind neighbour = b->cell_kind[cell_index(b, n)];
-  *kind = neighbour == CELL_CAVITY ? FACE_CAVITY : FACE_OUTER;
+  int neighbour = b->cell_kind[cell_index(b, n)];
+  *kind = neighbour >= CELL_CAVITY ? FACE_CAVITY : FACE_OUTER;
+  *cavity = (unsigned char)(neighbour >= CELL_CAVITY ? neighbour - CELL_CAVITY : 0);
   return neighbour != CELL_SOLID;
 }
 
@@ -224,17 +227,18 @@ static void fill_faces(const struct builder *b, bool half, struct mesh *mesh) {
     for (int axis = 0; axis < 3; axis++) {
       for (int side = -1; side <= 1; side += 2) {
         enum face_kind kind;
-        if (face_kind_of(b, half, c, axis, side, &kind)) {
+        unsigned char cavity;
+        if (face_kind_of(b, half, c, axis, side, &kind, &cavity)) {
           mesh->faces[mesh->face_count++] = (struct mesh_face){
-              element, (signed char)axis, (signed char)side, (unsigned char)kind};
+              element, (signed char)axis, (signed char)side, (unsigned char)kind, cavity};
         }
       }
       double width;
       int other = facing_element(b, c, axis, &width);
       if (other >= 0) {
         mesh->facing[mesh->facing_count++] =
-            (struct mesh_facing){{element, (signed char)axis, 1, FACE_OUTER},
-                                 {other, (signed char)axis, -1, FACE_OUTER}};
+            (struct mesh_facing){{element, (signed char)axis, 1, FACE_OUTER, 0},
+                                 {other, (signed char)axis, -1, FACE_OUTER, 0}};
         if (width < mesh->gap_width) {
           mesh->gap_width = width;
         }

@@ -4,7 +4,8 @@
 
 #include "solver/mesh/mesh.h"
 
-enum cell_kind { CELL_SOLID, CELL_CAVITY, CELL_GAP };
+/* CELL_CAVITY + c is a cell of cavity c < MESH_CAVITIES, each with a pressure of its own. */
+enum cell_kind { CELL_SOLID, CELL_GAP, CELL_CAVITY };
 
 /* One grid axis: line_count lines bound line_count - 1 cells; tag[c] says which feature cell c
  * belongs to (meaning up to the caller). */
@@ -39,8 +40,8 @@ enum status grid_axis_extend(struct grid_axis *axis, double end, int cells, int 
 
 void grid_release(struct grid *grid);
 
-/* What a cell holds. tag: its tags along the three axes. */
-typedef enum cell_kind (*grid_kind_fn)(const void *context, const int tag[3]);
+/* What a cell holds, an enum cell_kind. tag: its tags along the three axes. */
+typedef int (*grid_kind_fn)(const void *context, const int tag[3]);
 
 /* Moves a point of the tensor grid to its place in the body. */
 typedef void (*grid_map_fn)(const void *context, const double grid_point[3], double x[3]);

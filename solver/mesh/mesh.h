@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include "solver/base/error.h"
 
-enum { HEX27_NODES = 27, QUAD9_NODES = 9 };
+enum { HEX27_NODES = 27, QUAD9_NODES = 9, MESH_CAVITIES = 2 };
 
 enum face_kind { FACE_OUTER, FACE_CAVITY, FACE_BASE, FACE_SYMMETRY };
 
@@ -17,6 +17,7 @@ struct mesh_face {
   signed char axis; /* 0, 1, 2 */
   signed char side; /* -1, +1 */
   unsigned char kind;
+  unsigned char cavity; /* of a FACE_CAVITY: number of the cavity it bounds, < MESH_CAVITIES */
 };
 
 /* Two faces that look at each other across a gap; the first one is the slave of the contact. */

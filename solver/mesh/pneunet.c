@@ -34,7 +34,7 @@ static bool tag_is_void_axial(int tag) {
   return tag == AXIAL_CAVITY || tag == AXIAL_CAVITY_C;
 }
 
-static enum cell_kind pneunet_cell(const void *context, const int tag[3]) {
+static int pneunet_cell(const void *context, const int tag[3]) {
   const struct pneunet_spec *p = context;
   int axial = tag[0], lateral = tag[1], vertical = tag[2];
   bool over_channel = p->has_channel && lateral == LATERAL_CHANNEL;

@@ -29,7 +29,10 @@ enum status sample_measure(struct fe_model *model, const struct fe_state *state,
   shape_measure(mesh, state->u, &sample->shape);
   double rest = mesh->x[3 * mesh->centreline[mesh->section_count - 1] + 2];
   sample->tip_deflection = rest - sample->shape.tip[2];
-  sample->cavity_volume = model_volume(model, state, NULL) * (mesh->half ? 2 : 1);
+  sample->cavity_volume = 0;
+  for (int c = 0; c < MESH_CAVITIES; c++) {
+    sample->cavity_volume += model_cavity_volume(model, state, c) * (mesh->half ? 2 : 1);
+  }
   sample->max_stretch = shape_stretch(model, state->u, NULL);
   return sample->max_stretch < 0 ? STATUS_NO_MEMORY : STATUS_OK;
 }

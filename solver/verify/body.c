@@ -25,7 +25,7 @@ static void add_faces(const struct body *body, int element, const int cell[3], s
       if (cell[axis] == (side < 0 ? 0 : body->cells[axis] - 1)) {
         bool cavity = body->cavity && axis == 0 && side < 0;
         mesh->faces[mesh->face_count++] = (struct mesh_face){
-            element, (signed char)axis, (signed char)side, cavity ? FACE_CAVITY : FACE_OUTER};
+            element, (signed char)axis, (signed char)side, cavity ? FACE_CAVITY : FACE_OUTER, 0};
       }
     }
   }

@@ -22,8 +22,8 @@ enum status contact_blocks_build(int cells, double gap, struct mesh *mesh) {
   mesh->facing_count = pairs;
   mesh->gap_width = 0.1;
   for (int p = 0; p < pairs; p++) {
-    mesh->facing[p].slave = (struct mesh_face){p, 0, 1, FACE_OUTER};
-    mesh->facing[p].master = (struct mesh_face){pairs + p, 0, -1, FACE_OUTER};
+    mesh->facing[p].slave = (struct mesh_face){p, 0, 1, FACE_OUTER, 0};
+    mesh->facing[p].master = (struct mesh_face){pairs + p, 0, -1, FACE_OUTER, 0};
   }
   return STATUS_OK;
 }

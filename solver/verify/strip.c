@@ -4,7 +4,7 @@
 #include "solver/mesh/grid.h"
 #include "solver/verify/body.h"
 
-static enum cell_kind all_solid(const void *context, const int tag[3]) {
+static int all_solid(const void *context, const int tag[3]) {
   (void)context;
   (void)tag;
   return CELL_SOLID;

@@ -9,7 +9,7 @@
 enum tag { BAR, LEG, BETWEEN };
 static const double bar = 1, leg_length = 8, thickness = 1;
 
-static enum cell_kind kind_of(const void *context, const int tag[3]) {
+static int kind_of(const void *context, const int tag[3]) {
   (void)context;
   return tag[0] == BAR || tag[1] == LEG ? CELL_SOLID : CELL_GAP;
 }

@@ -15,14 +15,14 @@
 
 /* ---- bodies ---- */
 
-static enum cell_kind solid_cell(const void *context, const int tag[3]) {
+static int solid_cell(const void *context, const int tag[3]) {
   (void)context;
   (void)tag;
   return CELL_SOLID;
 }
 
 /* Every second cell along axis 0 is a gap. */
-static enum cell_kind gap_cell(const void *context, const int tag[3]) {
+static int gap_cell(const void *context, const int tag[3]) {
   (void)context;
   return tag[0] % 2 ? CELL_GAP : CELL_SOLID;
 }

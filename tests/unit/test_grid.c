@@ -17,7 +17,7 @@ struct hole {
   enum cell_kind kind;
 };
 
-static enum cell_kind kind_of(const void *context, const int tag[3]) {
+static int kind_of(const void *context, const int tag[3]) {
   const struct hole *hole = context;
   int cell = 100 * tag[0] + 10 * tag[1] + tag[2];
   for (; hole->cell >= 0; hole++) {
