@@ -140,28 +140,11 @@ enum status section_form_give(const struct mesh *mesh, const struct section_form
   return status;
 }
 
-/* Rotation vector of the rotation a^T b, whose angle is below pi. */
-static void relative_spin(const double a[9], const double b[9], double spin[3]) {
-  double r[9], trace = 0;
-  for (int i = 0; i < 9; i++) {
-    r[i] = 0;
-    for (int k = 0; k < 3; k++) {
-      r[i] += a[3 * k + i / 3] * b[3 * k + i % 3];
-    }
-    trace += i % 4 == 0 ? r[i] : 0;
-  }
-  double angle = acos(fmax(-1, fmin(1, 0.5 * (trace - 1))));
-  double factor = angle > 1e-6 ? 0.5 * angle / sin(angle) : 0.5;
-  spin[0] = factor * (r[7] - r[5]);
-  spin[1] = factor * (r[2] - r[6]);
-  spin[2] = factor * (r[3] - r[1]);
-}
-
 void section_form_extrapolate(const struct mesh *mesh, struct section_form *form, double share,
                               const struct section_form *from, const struct section_form *to) {
   for (int s = 0; s < mesh->section_count; s++) {
     double spin[3], turn[9], before[9], *rotation = form->rotation + 9 * s;
-    relative_spin(from->rotation + 9 * s, to->rotation + 9 * s, spin);
+    rotation_between(from->rotation + 9 * s, to->rotation + 9 * s, spin);
     for (int i = 0; i < 3; i++) {
       spin[i] *= share;
       form->step[3 * s + i] += share * (to->step[3 * s + i] - from->step[3 * s + i]);

@@ -38,6 +38,23 @@ static inline void rotation_matrix(const double w[3], double r[9]) {
   r[7] += s * w[0];
 }
 
+/* Rotation vector (angle below pi) of the rotation a^T b between two frames, seen from the first. */
+static inline void rotation_between(const double a[9], const double b[9], double w[3]) {
+  double r[9], trace = 0;
+  for (int i = 0; i < 9; i++) {
+    r[i] = 0;
+    for (int k = 0; k < 3; k++) {
+      r[i] += a[3 * k + i / 3] * b[3 * k + i % 3];
+    }
+    trace += i % 4 == 0 ? r[i] : 0;
+  }
+  double angle = acos(fmax(-1, fmin(1, 0.5 * (trace - 1))));
+  double factor = angle > 1e-6 ? 0.5 * angle / sin(angle) : 0.5;
+  w[0] = factor * (r[7] - r[5]);
+  w[1] = factor * (r[2] - r[6]);
+  w[2] = factor * (r[3] - r[1]);
+}
+
 static inline void mat3_apply(const double m[9], const double x[3], double out[3]) {
   double a = vec3_dot(m, x), b = vec3_dot(m + 3, x), c = vec3_dot(m + 6, x);
   out[0] = a;

@@ -41,6 +41,7 @@ struct mesh {
   double gap_width;      /* narrowest gap between facing faces, m; 0 without facing */
   double wall_thickness; /* thinnest wall, m: scale of the contact stiffness and tolerances */
   bool half;             /* the other half is the mirror image about y = 0 */
+  bool spatial;          /* the body bends and twists: its bending angle is that of its sections */
   /* Axial sections, ordered from the fixed base; section_count is 0 for a body without them. */
   int section_count;
   int *node_section;        /* node_count */

@@ -137,6 +137,16 @@ static void set_real(json_t *object, const char *key, double value) {
   }
 }
 
+/* How the body lies in space. */
+static void set_spatial(json_t *o, const struct spatial *s) {
+  set_real(o, "twist_angle_deg", s->twist / degree);
+  set_real(o, "side_bending_angle_deg", s->side_bending / degree);
+  set_real(o, "end_bending_angle_deg", s->end_bending / degree);
+  set_real(o, "end_twist_angle_deg", s->end_twist / degree);
+  set_real(o, "reach_mm", 1e3 * s->reach);
+  set_real(o, "contraction_pct", 100 * s->contraction);
+}
+
 /* Forces and pressures of contact; for a body that can touch nothing there are none. */
 static void set_contact(json_t *o, const struct sample *s) {
   if (!s->touching) {
@@ -161,6 +171,7 @@ static json_t *sample_object(const struct sample *s) {
   set_real(o, "tip_x_mm", 1e3 * s->shape.tip[0]);
   set_real(o, "tip_y_mm", 1e3 * s->shape.tip[1]);
   set_real(o, "tip_z_mm", 1e3 * s->shape.tip[2]);
+  set_spatial(o, &s->spatial);
   set_real(o, "cavity_volume_mm3", 1e9 * s->cavity_volume);
   set_real(o, "min_gap_mm", 1e3 * s->min_gap);
   set_real(o, "max_stretch", s->max_stretch);
@@ -215,6 +226,7 @@ static json_t *metrics_object(const struct result *r) {
     set_real(o, "cai_rad_per_m_kPa", fit.slope * degree / r->spec->pneunet.length);
   }
   set_real(o, "tip_deflection_mm", 1e3 * s->tip_deflection);
+  set_spatial(o, &s->spatial);
   if (r->onset >= 0) {
     set_real(o, "contact_onset_kPa", 1e-3 * r->onset);
   }

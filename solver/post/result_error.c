@@ -58,9 +58,11 @@ void result_set_errors(const struct result *r, json_t *metrics) {
   double chord = relative(s->shape.chord_angle, f->shape.chord_angle);
   double end = relative(s->shape.end_face_angle, f->shape.end_face_angle);
   double tip = relative(s->tip_deflection, f->tip_deflection);
+  double twist = relative(s->spatial.twist, f->spatial.twist);
+  double contraction = relative(s->spatial.contraction, f->spatial.contraction);
   double whole = shared * fmax(fmax(angle, chord), fmax(end, tip));
   double bending = fmax(angle, whole);
-  /* The last four are proportional to the angle or come with the same motion. */
+  /* Those of the fits are proportional to the angle, the onset comes with the same motion. */
   const struct {
     const char *key;
     double difference;
@@ -68,7 +70,8 @@ void result_set_errors(const struct result *r, json_t *metrics) {
       {"bending_angle_deg", bending},           {"chord_angle_deg", fmax(chord, whole)},
       {"end_face_angle_deg", fmax(end, whole)}, {"tip_deflection_mm", fmax(tip, whole)},
       {"sensitivity_deg_per_kPa", bending},     {"intercept_deg", bending},
-      {"cai_rad_per_m_kPa", bending},           {"contact_onset_kPa", bending}};
+      {"cai_rad_per_m_kPa", bending},           {"contact_onset_kPa", bending},
+      {"twist_angle_deg", fmax(twist, whole)},  {"contraction_pct", fmax(contraction, whole)}};
   for (size_t k = 0; k < sizeof deflections / sizeof *deflections; k++) {
     set_error(r, metrics, deflections[k].key, &deflection_margin, deflections[k].difference);
   }

@@ -27,6 +27,13 @@ enum status sample_measure(struct fe_model *model, const struct fe_state *state,
   model_update_gaps(model, state);
   measure_contact(model, sample);
   shape_measure(mesh, state->u, &sample->shape);
+  enum status status = spatial_measure(mesh, state->u, &sample->spatial);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  if (mesh->spatial) {
+    sample->shape.bending_angle = sample->spatial.bending;
+  }
   double rest = mesh->x[3 * mesh->centreline[mesh->section_count - 1] + 2];
   sample->tip_deflection = rest - sample->shape.tip[2];
   sample->cavity_volume = 0;

@@ -3,10 +3,12 @@
 #define PNEULAB_POST_SAMPLE_H
 
 #include "solver/post/shape.h"
+#include "solver/post/spatial.h"
 
 struct sample {
   double pressure; /* Pa */
-  struct shape shape;
+  struct shape shape; /* of a mesh that is marked spatial, its bending angle is spatial.bending */
+  struct spatial spatial;
   double tip_deflection; /* of the end of the bottom centreline towards -z, m */
   double cavity_volume;  /* m3, whole body */
   double min_gap;        /* m, INFINITY without facing faces */
