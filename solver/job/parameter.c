@@ -106,7 +106,7 @@ enum status parameter_set(struct job_spec *spec, const struct job_parameter *par
                           double value, struct error *error) {
   *(double *)((char *)spec + parameter->offset) = value;
   enum status status = pneunet_derive(&spec->given, &spec->pneunet, error);
-  spec->half_model = reader_symmetric(spec);
+  spec->half_model = reader_half_model(spec);
   return status;
 }
 

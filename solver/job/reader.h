@@ -39,8 +39,9 @@ enum status reader_material(const struct reader *reader, const json_t *material,
 enum status reader_sensitivity(const struct reader *reader, const json_t *value,
                                struct job_spec *spec);
 
-/* Whether the body and its loads are symmetric about y = 0. */
-bool reader_symmetric(const struct job_spec *spec);
+/* Whether half of the body is to be solved: body and loads are symmetric about y = 0, and the job
+ * does not ask for the whole. */
+bool reader_half_model(const struct job_spec *spec);
 
 /* Whether a body of these dimensions can exist. STATUS_OK, or STATUS_GEOMETRY with the pointer
  * to the dimension that has to change, the reason and the limit. */

@@ -155,13 +155,13 @@ static enum accuracy read_accuracy(const char *word) {
                                      : ACCURACY_STANDARD;
 }
 
-bool reader_symmetric(const struct job_spec *spec) {
+bool reader_half_model(const struct job_spec *spec) {
   const struct pneunet_spec *p = &spec->pneunet;
   bool symmetric = p->taper_left == p->taper_right && spec->load.gravity[1] == 0.0;
   for (int k = 0; k < spec->plane_count; k++) {
     symmetric = symmetric && spec->plane[k].normal[1] == 0.0;
   }
-  return symmetric;
+  return symmetric && !spec->whole_model;
 }
 
 /* The document has passed the schema and its defaults are filled in. */
@@ -171,6 +171,8 @@ static enum status read_response(const struct reader *reader, const json_t *docu
   reader_copy(spec->name, sizeof spec->name, json_string_value(json_object_get(document, "name")));
   spec->contact = json_is_true(json_object_get(document, "contact"));
   spec->accuracy = read_accuracy(json_string_value(json_object_get(document, "accuracy")));
+  const char *symmetry = json_string_value(json_object_get(document, "symmetry"));
+  spec->whole_model = strcmp(symmetry, "none") == 0;
   spec->error_estimate = json_is_true(json_object_get(document, "error_estimate"));
   spec->timeout_s = reader_member(reader, document, "timeout", "s", 0.0);
   read_load(reader, json_object_get(document, "load"), &spec->load);
@@ -196,7 +198,7 @@ static enum status read_response(const struct reader *reader, const json_t *docu
   if (status == STATUS_OK) {
     status = reader_sensitivity(reader, json_object_get(document, "sensitivity"), spec);
   }
-  spec->half_model = reader_symmetric(spec);
+  spec->half_model = reader_half_model(spec);
   return status;
 }
 

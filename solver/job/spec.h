@@ -145,7 +145,8 @@ struct job_spec {
   bool contact;
   struct plane_spec plane[PLANES_MAX];
   int plane_count;
-  bool half_model; /* symmetric about y = 0 in geometry and load */
+  bool whole_model; /* asked for even where half of it would do */
+  bool half_model;  /* symmetric about y = 0 in geometry and load, and not whole_model */
   enum accuracy accuracy;
   bool error_estimate; /* solve the end of the load path on a finer mesh, too */
   double timeout_s;    /* 0: none */

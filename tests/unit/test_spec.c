@@ -124,6 +124,8 @@ START_TEST(an_unsymmetric_body_or_load_needs_the_whole_model) {
   ck_assert(!spec.half_model);
   suite_must_read("/load/gravity", "[\"1 m/s2\", 0, \"1 m/s2\"]", &spec);
   ck_assert(spec.half_model);
+  suite_must_read("/symmetry", "\"none\"", &spec);
+  ck_assert(!spec.half_model);
 }
 END_TEST
 
@@ -242,6 +244,7 @@ static const struct refusal refusals[] = {
     {"/actuator/height", "{\"base\": \"20 mm\"}", STATUS_INVALID, "/actuator/height",
      "\"tip\" is missing"},
     {"/actuator/height", "true", STATUS_INVALID, "/actuator/height", "string or object"},
+    {"/symmetry", "\"half\"", STATUS_INVALID, "/symmetry", "\"auto\" or \"none\""},
     {"/actuator/gap_shape", "\"U\"", STATUS_INVALID, "/actuator/gap_shape", "\"rectangular\""},
     {"/actuator/chambers", "[]", STATUS_INVALID, "/actuator/chambers", "at least 1 item"},
     {"/actuator/chambers/1/config", "\"D\"", STATUS_INVALID, "/actuator/chambers/1/config",
