@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include "solver/job/embed.h"
+#include "solver/job/json.h"
 #include "solver/run.h"
 
 enum exit_code {
@@ -17,8 +19,6 @@ enum exit_code {
   EXIT_INTERNAL = 4,
   EXIT_CANCELLED = 5
 };
-
-enum { JOB_BYTES_MAX = 1 << 20 };
 
 static volatile sig_atomic_t cancel_requested;
 
@@ -35,7 +35,11 @@ static bool cancelled(void *context) {
 static const char usage[] =
     "usage: pneulab-solve [--out DIR] [--events FILE] [--threads N] [--deck FILE]\n"
     "                     [--path-in FILE] [--path-out FILE] [--verbose] JOB.json\n"
-    "  JOB.json        job document; - reads standard input\n"
+    "       pneulab-solve --embed JOB.json\n"
+    "  JOB.json        job document; - reads standard input. Files that it names, as in\n"
+    "                  { \"file\": \"curve.csv\" }, are looked for from its folder\n"
+    "  --embed         print the job with the content of these files in their place, to be sent\n"
+    "                  to the daemon\n"
     "  --out DIR       write fields, tables and a CalculiX deck there; made when missing\n"
     "  --events FILE   append progress as JSON lines\n"
     "  --threads N     threads of the dense linear algebra (default 1)\n"
@@ -50,16 +54,22 @@ static const char usage[] =
 struct arguments {
   const char *job, *events;
   int threads;
+  bool embed; /* print the self-contained job instead of running it */
   struct run_options run;
 };
 
 static bool parse_arguments(int argc, char **argv, struct arguments *a) {
-  static const struct option options[] = {
-      {"out", required_argument, NULL, 'o'},     {"events", required_argument, NULL, 'e'},
-      {"threads", required_argument, NULL, 't'}, {"deck", required_argument, NULL, 'd'},
-      {"path-in", required_argument, NULL, 'i'}, {"path-out", required_argument, NULL, 'p'},
-      {"verbose", no_argument, NULL, 'v'},       {"help", no_argument, NULL, 'h'},
-      {"version", no_argument, NULL, 'V'},       {0}};
+  static const struct option options[] = {{"out", required_argument, NULL, 'o'},
+                                          {"events", required_argument, NULL, 'e'},
+                                          {"threads", required_argument, NULL, 't'},
+                                          {"deck", required_argument, NULL, 'd'},
+                                          {"path-in", required_argument, NULL, 'i'},
+                                          {"path-out", required_argument, NULL, 'p'},
+                                          {"verbose", no_argument, NULL, 'v'},
+                                          {"embed", no_argument, NULL, 'm'},
+                                          {"version", no_argument, NULL, 'V'},
+                                          {"help", no_argument, NULL, 'h'},
+                                          {0}};
   int option;
   while ((option = getopt_long(argc, argv, "h", options, NULL)) != -1) {
     switch (option) {
@@ -80,6 +90,9 @@ static bool parse_arguments(int argc, char **argv, struct arguments *a) {
       break;
     case 'p':
       a->run.path_out = optarg;
+      break;
+    case 'm':
+      a->embed = true;
       break;
     case 'v':
       a->run.verbose = true;
@@ -102,13 +115,13 @@ static bool parse_arguments(int argc, char **argv, struct arguments *a) {
  * recognised, not cut. The caller frees the result. */
 static char *read_job(const char *path, size_t *size, struct error *error) {
   FILE *file = strcmp(path, "-") == 0 ? stdin : fopen(path, "r");
-  char *text = malloc(JOB_BYTES_MAX + 1);
+  char *text = malloc(JSON_TEXT_MAX + 1);
   if (!file || !text) {
     error_set(error, STATUS_IO, NULL, "cannot read %s: %s", path, strerror(errno));
     free(text);
     text = NULL;
   } else {
-    *size = fread(text, 1, JOB_BYTES_MAX + 1, file);
+    *size = fread(text, 1, JSON_TEXT_MAX + 1, file);
     if (ferror(file)) {
       error_set(error, STATUS_IO, NULL, "reading %s failed: %s", path, strerror(errno));
       free(text);
@@ -157,11 +170,36 @@ static int report(const struct error *error) {
   return invalid ? EXIT_INVALID_JOB : EXIT_INTERNAL;
 }
 
+/* Reads the job with the files that it names, or only prints it so. Places of errors are those in
+ * the job's own file. */
+static enum status read_spec(const struct arguments *a, struct job_spec *spec,
+                             struct error *error) {
+  size_t size = 0, length = 0;
+  char *embedded = NULL;
+  char *text = read_job(a->job, &size, error);
+  if (!text) {
+    return STATUS_IO;
+  }
+  const char *path = strcmp(a->job, "-") == 0 ? NULL : a->job;
+  enum status status = embed_files(text, size, path, &embedded, &length, error);
+  if (status == STATUS_OK) {
+    status = job_spec_read(embedded, length, spec, error);
+    if (status != STATUS_OK && error->line > 0) {
+      json_text_locate(text, size, error->pointer, &error->line, &error->column);
+    }
+  }
+  if (status == STATUS_OK && a->embed) {
+    puts(embedded);
+  }
+  free(embedded);
+  free(text);
+  return status;
+}
+
 int main(int argc, char **argv) {
   struct arguments a = {.threads = 1, .run.cancelled = cancelled};
   struct error error = {0};
   struct job_spec spec;
-  size_t size = 0;
   if (!parse_arguments(argc, argv, &a)) {
     fputs(usage, stderr);
     return EXIT_INTERNAL;
@@ -170,12 +208,13 @@ int main(int argc, char **argv) {
   sigaction(SIGTERM, &action, NULL);
   sigaction(SIGINT, &action, NULL);
   openblas_set_num_threads(a.threads);
-  char *text = read_job(a.job, &size, &error);
-  if (!text || job_spec_read(text, size, &spec, &error) != STATUS_OK) {
-    free(text);
+  if (read_spec(&a, &spec, &error) != STATUS_OK) {
     return report(&error);
   }
-  free(text);
+  if (a.embed) {
+    job_spec_release(&spec);
+    return EXIT_SUCCEEDED;
+  }
   if (make_directory(a.run.out_dir, &error) != STATUS_OK ||
       open_events(a.events, &a.run.events, &error) != STATUS_OK) {
     return report(&error);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "solver/base/text.h"
+#include "solver/job/embed.h"
 #include "solver/job/json.h"
 #include "solver/job/reader.h"
 #include "solver/job/schema.h"
@@ -241,7 +242,10 @@ enum status job_reader_read(const struct job_reader *reader, const char *text, s
   if (status != STATUS_OK) {
     goto done;
   }
-  status = schema_check(reader->schema, document, error);
+  status = embed_refuse(document, error);
+  if (status == STATUS_OK) {
+    status = schema_check(reader->schema, document, error);
+  }
   if (status == STATUS_OK) {
     status = schema_fill(reader->schema, document, error);
   }

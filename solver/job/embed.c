@@ -1,0 +1,262 @@
+#include "solver/job/embed.h"
+
+#include <errno.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "solver/base/text.h"
+#include "solver/job/json.h"
+
+/* A place where a job may name a file. */
+struct slot {
+  const char *group; /* member of the document that holds the key, or NULL */
+  const char *key;
+  bool table; /* a table of data, otherwise a document */
+};
+
+static const struct slot slots[] = {
+    {NULL, "data", true}, {"measured", "data", true}, {NULL, "base", false}};
+
+enum { SLOTS = sizeof slots / sizeof *slots, EMBED_LEVELS = 2 };
+
+/* What is done at every place on the way through a document. */
+struct embedding {
+  bool read; /* put contents in, rather than refuse */
+  bool changed;
+  struct json_pointer pointer;
+  struct error *error;
+};
+
+static enum status walk(struct embedding *embedding, json_t *document, const char *folder,
+                        int level);
+
+/* ---- reading ---------------------------------------------------------------------------- */
+
+/* "folder/name", or the name alone where it is absolute or the folder is not known. The caller
+ * frees it. */
+static char *join_path(const char *folder, const char *name) {
+  bool alone = !folder || name[0] == '/';
+  size_t size = strlen(name) + (alone ? 0 : strlen(folder) + 1) + 1;
+  char *path = malloc(size);
+  if (path) {
+    snprintf(path, size, "%s%s%s", alone ? "" : folder, alone ? "" : "/", name);
+  }
+  return path;
+}
+
+/* The folder of a path, NULL for the working directory. The caller frees it. */
+static enum status folder_of(const char *path, char **folder) {
+  const char *slash = path ? strrchr(path, '/') : NULL;
+  *folder = slash ? strndup(path, slash == path ? 1 : (size_t)(slash - path)) : NULL;
+  return slash && !*folder ? STATUS_NO_MEMORY : STATUS_OK;
+}
+
+static enum status refuse_file(struct embedding *embedding, const char *name, const char *why) {
+  char quoted[160];
+  return error_set(embedding->error, STATUS_INVALID, embedding->pointer.text,
+                   "the file %s %s; paths start at the folder of the job's file",
+                   text_quote(quoted, sizeof quoted, name), why);
+}
+
+/* Reads a whole file into *text, NUL-terminated, owned by the caller. */
+static enum status read_file(struct embedding *embedding, const char *path, const char *name,
+                             char **text, size_t *size) {
+  struct stat properties;
+  enum status status = STATUS_OK;
+  /* Opening a pipe would wait for its writer. */
+  if (stat(path, &properties) != 0) {
+    return refuse_file(embedding, name, strerror(errno));
+  }
+  if (!S_ISREG(properties.st_mode)) {
+    return refuse_file(embedding, name, "is not a regular file");
+  }
+  FILE *file = fopen(path, "rb");
+  char *buffer = malloc(JSON_TEXT_MAX + 2);
+  if (!file || !buffer) {
+    status = file ? error_set(embedding->error, STATUS_NO_MEMORY, NULL, "no memory for a file")
+                  : refuse_file(embedding, name, strerror(errno));
+    goto done;
+  }
+  *size = fread(buffer, 1, JSON_TEXT_MAX + 1, file);
+  if (ferror(file)) {
+    status = refuse_file(embedding, name, "cannot be read to its end");
+  } else if (*size > JSON_TEXT_MAX) {
+    status = refuse_file(embedding, name, "is larger than 1 MiB, the most that a job may have");
+  } else if (memchr(buffer, '\0', *size)) {
+    status = refuse_file(embedding, name, "is no text in UTF-8: it has NUL characters");
+  }
+  if (status == STATUS_OK) {
+    buffer[*size] = '\0';
+    *text = buffer;
+    buffer = NULL;
+  }
+done:
+  free(buffer);
+  if (file) {
+    fclose(file);
+  }
+  return status;
+}
+
+/* The text as a JSON string. Text that is not in UTF-8 is taken for Latin-1, in which measuring
+ * machines write degrees and micro signs. NULL when memory runs out. */
+static json_t *text_value(const char *text, size_t size) {
+  json_t *value = json_stringn(text, size);
+  if (value) {
+    return value;
+  }
+  char *wide = malloc(2 * size + 1);
+  size_t length = 0;
+  for (size_t i = 0; wide && i < size; i++) {
+    unsigned char c = (unsigned char)text[i];
+    if (c >= 0x80) {
+      wide[length++] = (char)(0xC0 | (c >> 6));
+      c = 0x80 | (c & 0x3F);
+    }
+    wide[length++] = (char)c;
+  }
+  value = wide ? json_stringn(wide, length) : NULL;
+  free(wide);
+  return value;
+}
+
+/* The document of a base, its own files embedded. */
+static enum status read_document(struct embedding *embedding, const char *path, const char *text,
+                                 size_t size, int level, json_t **document) {
+  struct error inner = {.status = STATUS_OK};
+  char *folder = NULL;
+  enum status status = json_text_read(text, size, document, &inner);
+  if (status != STATUS_OK) {
+    return error_set(embedding->error, status, embedding->pointer.text, "line %d of that file: %s",
+                     inner.line, inner.message);
+  }
+  status = folder_of(path, &folder);
+  if (status == STATUS_OK) {
+    status = walk(embedding, *document, folder, level + 1);
+  }
+  if (status != STATUS_OK) {
+    json_decref(*document);
+    *document = NULL;
+  }
+  free(folder);
+  return status;
+}
+
+/* ---- one place -------------------------------------------------------------------------- */
+
+static bool ends_with(const char *text, const char *end) {
+  size_t length = strlen(text), tail = strlen(end);
+  return length >= tail && strcmp(text + length - tail, end) == 0;
+}
+
+/* Puts the content of the file `name` in the place `key` of `parent`. */
+static enum status embed_one(struct embedding *embedding, json_t *parent, const struct slot *slot,
+                             const char *name, const char *folder, int level) {
+  if (slot->table == ends_with(name, ".json")) {
+    return refuse_file(embedding, name,
+                       slot->table ? "is no table: give one of comma-separated values, as .csv"
+                                   : "is no job document: give one, as .json");
+  }
+  char *path = join_path(folder, name), *text = NULL;
+  size_t size = 0;
+  json_t *content = NULL;
+  enum status status = path ? read_file(embedding, path, name, &text, &size) : STATUS_NO_MEMORY;
+  if (status == STATUS_OK && slot->table) {
+    content = json_pack("{s:o}", "csv", text_value(text, size));
+  } else if (status == STATUS_OK) {
+    status = read_document(embedding, path, text, size, level, &content);
+  }
+  if (status == STATUS_OK && json_object_set_new(parent, slot->key, content) != 0) {
+    status = STATUS_NO_MEMORY;
+  }
+  if (status == STATUS_NO_MEMORY) {
+    error_set(embedding->error, status, NULL, "no memory for a file");
+  }
+  embedding->changed = true;
+  free(text);
+  free(path);
+  return status;
+}
+
+static enum status look_at(struct embedding *embedding, json_t *parent, const struct slot *slot,
+                           const char *folder, int level) {
+  json_t *value = json_object_get(parent, slot->key);
+  json_t *name = json_object_get(value, "file");
+  size_t mark = json_pointer_key(&embedding->pointer, slot->key);
+  enum status status = STATUS_OK;
+  if (name) {
+    size_t inner = json_pointer_key(&embedding->pointer, "file");
+    if (!embedding->read) {
+      status = error_set(embedding->error, STATUS_INVALID, embedding->pointer.text,
+                         "a file can be named on the command line only: send its content instead; "
+                         "\"pneulab-solve --embed JOB.json\" prints the job with the content of "
+                         "its files in their place");
+    } else if (json_is_string(name) && json_object_size(value) == 1) {
+      status = embed_one(embedding, parent, slot, json_string_value(name), folder, level);
+    } else {
+      status = error_set(embedding->error, STATUS_INVALID, embedding->pointer.text,
+                         "a file is named by one string and nothing beside it; for example "
+                         "{ \"file\": \"%s\" }",
+                         slot->table ? "curve.csv" : "baseline.json");
+    }
+    json_pointer_pop(&embedding->pointer, inner);
+  } else if (!slot->table) {
+    status = walk(embedding, value, folder, level + 1);
+  }
+  json_pointer_pop(&embedding->pointer, mark);
+  return status;
+}
+
+/* A base has no base, so the walk ends below it, whatever the files name. */
+static enum status walk(struct embedding *embedding, json_t *document, const char *folder,
+                        int level) {
+  enum status status = STATUS_OK;
+  for (size_t i = 0; level < EMBED_LEVELS && i < SLOTS && status == STATUS_OK; i++) {
+    const char *group = slots[i].group;
+    json_t *parent = group ? json_object_get(document, group) : document;
+    size_t mark = group ? json_pointer_key(&embedding->pointer, group) : 0;
+    status = look_at(embedding, parent, &slots[i], folder, level);
+    if (group) {
+      json_pointer_pop(&embedding->pointer, mark);
+    }
+  }
+  return status;
+}
+
+/* ---- the whole document ----------------------------------------------------------------- */
+
+enum status embed_files(const char *text, size_t size, const char *path, char **embedded,
+                        size_t *length, struct error *error) {
+  json_t *document = NULL;
+  char *folder = NULL;
+  struct embedding embedding = {.read = true, .error = error};
+  enum status status = json_text_read(text, size, &document, error);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  status = folder_of(path, &folder);
+  if (status == STATUS_OK) {
+    status = walk(&embedding, document, folder, 0);
+  }
+  if (status == STATUS_OK) {
+    *embedded = embedding.changed ? json_dumps(document, JSON_INDENT(2)) : strndup(text, size);
+    *length = *embedded ? strlen(*embedded) : 0;
+    status = *embedded ? STATUS_OK : STATUS_NO_MEMORY;
+  } else if (error && status == STATUS_INVALID) {
+    json_text_locate(text, size, error->pointer, &error->line, &error->column);
+  }
+  if (status == STATUS_NO_MEMORY) {
+    error_set(error, status, NULL, "no memory for the document");
+  }
+  free(folder);
+  json_decref(document);
+  return status;
+}
+
+enum status embed_refuse(const json_t *document, struct error *error) {
+  struct embedding embedding = {.read = false, .error = error};
+  return walk(&embedding, (json_t *)document, NULL, 0);
+}

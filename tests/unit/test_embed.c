@@ -1,0 +1,187 @@
+/* Files that a job names: their content in their place, and what is refused. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <sys/stat.h>
+
+#include "solver/job/embed.h"
+#include "tests/unit/suite.h"
+
+static char folder[] = "/tmp/test_embed_XXXXXX";
+
+static void path_in_folder(char *path, size_t size, const char *name) {
+  snprintf(path, size, "%s/%s", folder, name);
+}
+
+static void write_file(const char *name, const char *bytes, size_t size) {
+  char path[200];
+  path_in_folder(path, sizeof path, name);
+  FILE *file = fopen(path, "wb");
+  ck_assert_ptr_nonnull(file);
+  ck_assert_uint_eq(fwrite(bytes, 1, size, file), size);
+  fclose(file);
+}
+
+static void set_up(void) {
+  char path[200];
+  strcpy(strrchr(folder, '_'), "_XXXXXX");
+  ck_assert_ptr_nonnull(mkdtemp(folder));
+  path_in_folder(path, sizeof path, "sub");
+  ck_assert_int_eq(mkdir(path, 0700), 0);
+  write_file("a.csv", "x,y\r\n1,2\r\n", 10);
+  write_file("latin.csv", "x (\xB5m)\n", 7);
+  write_file("nul.csv", "x\0y", 3);
+  write_file("bad.json", "{\n  oops }", 10);
+  static const char base[] =
+      "{\"kind\":\"response\",\"measured\":{\"data\":{\"file\":\"../a.csv\"}}}";
+  write_file("sub/base.json", base, sizeof base - 1);
+  static const char loop[] = "{\"base\":{\"file\":\"loop.json\"}}";
+  write_file("loop.json", loop, sizeof loop - 1);
+  char *large = calloc(1, (1 << 20) + 1);
+  ck_assert_ptr_nonnull(large);
+  memset(large, ' ', (1 << 20) + 1);
+  write_file("large.csv", large, (1 << 20) + 1);
+  free(large);
+}
+
+static void tear_down(void) {
+  static const char *const names[] = {"a.csv",         "latin.csv", "nul.csv",   "bad.json",
+                                      "sub/base.json", "loop.json", "large.csv", "sub"};
+  char path[200];
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    path_in_folder(path, sizeof path, names[i]);
+    remove(path);
+  }
+  rmdir(folder);
+}
+
+/* Embeds as if the text stood in job.json of the folder; NULL when refused. */
+static json_t *embed(const char *text, struct error *error) {
+  char path[200], *embedded = NULL;
+  size_t length = 0;
+  path_in_folder(path, sizeof path, "job.json");
+  if (embed_files(text, strlen(text), path, &embedded, &length, error) != STATUS_OK) {
+    ck_assert_ptr_null(embedded);
+    return NULL;
+  }
+  json_t *document = json_loadb(embedded, length, 0, NULL);
+  ck_assert_ptr_nonnull(document);
+  free(embedded);
+  return document;
+}
+
+static const char *string_at(const json_t *document, const char *a, const char *b, const char *c) {
+  const json_t *value = json_object_get(document, a);
+  value = b ? json_object_get(value, b) : value;
+  return json_string_value(c ? json_object_get(value, c) : value);
+}
+
+START_TEST(text_without_files_is_left_as_it_is) {
+  static const char text[] = " {\"kind\" : \"verify\",\n\"data\":{\"csv\":\"x\"}, \"n\": 1.50}";
+  char *embedded = NULL;
+  size_t length = 0;
+  ck_assert_int_eq(embed_files(text, sizeof text - 1, NULL, &embedded, &length, NULL), STATUS_OK);
+  ck_assert_str_eq(embedded, text);
+  ck_assert_uint_eq(length, sizeof text - 1);
+  free(embedded);
+}
+END_TEST
+
+START_TEST(tables_become_text) {
+  json_t *document = embed("{\"data\":{\"file\":\"a.csv\"},\"measured\":{\"data\":"
+                           "{\"file\":\"./sub/../a.csv\"}},\"other\":{\"file\":\"a.csv\"}}",
+                           NULL);
+  ck_assert_str_eq(string_at(document, "data", "csv", NULL), "x,y\r\n1,2\r\n");
+  ck_assert_uint_eq(json_object_size(json_object_get(document, "data")), 1);
+  ck_assert_str_eq(string_at(document, "measured", "data", "csv"), "x,y\r\n1,2\r\n");
+  ck_assert_str_eq(string_at(document, "other", "file", NULL), "a.csv");
+  json_decref(document);
+  document = embed("{\"data\":{\"file\":\"latin.csv\"}}", NULL);
+  ck_assert_str_eq(string_at(document, "data", "csv", NULL), "x (\xC2\xB5m)\n");
+  json_decref(document);
+}
+END_TEST
+
+START_TEST(a_base_becomes_its_document_with_its_own_files) {
+  json_t *document = embed("{\"base\":{\"file\":\"sub/base.json\"}}", NULL);
+  ck_assert_str_eq(string_at(document, "base", "kind", NULL), "response");
+  ck_assert_str_eq(string_at(json_object_get(document, "base"), "measured", "data", "csv"),
+                   "x,y\r\n1,2\r\n");
+  json_decref(document);
+  document = embed("{\"base\":{\"data\":{\"file\":\"a.csv\"}}}", NULL);
+  ck_assert_str_eq(string_at(document, "base", "data", "csv"), "x,y\r\n1,2\r\n");
+  json_decref(document);
+}
+END_TEST
+
+START_TEST(a_base_that_names_itself_ends) {
+  json_t *document = embed("{\"base\":{\"file\":\"loop.json\"}}", NULL);
+  ck_assert_ptr_nonnull(document);
+  json_decref(document);
+}
+END_TEST
+
+static const struct {
+  const char *text;
+  enum status status;
+  const char *pointer, *phrase;
+  int line;
+} refusals[] = {
+    {"{\n\"data\": {\n\"file\": \"b.csv\"}}", STATUS_INVALID, "/data/file", "No such file", 3},
+    {"{\"data\":{\"file\":\"sub\"}}", STATUS_INVALID, "/data/file", "not a regular file", 1},
+    {"{\"data\":{\"file\":\"/dev/zero\"}}", STATUS_INVALID, "/data/file", "not a regular", 1},
+    {"{\"data\":{\"file\":\"large.csv\"}}", STATUS_INVALID, "/data/file", "larger than 1 MiB", 1},
+    {"{\"data\":{\"file\":\"nul.csv\"}}", STATUS_INVALID, "/data/file", "no text in UTF-8", 1},
+    {"{\"data\":{\"file\":\"bad.json\"}}", STATUS_INVALID, "/data/file", "no table", 1},
+    {"{\"data\":{\"file\":5}}", STATUS_INVALID, "/data/file", "one string", 1},
+    {"{\"data\":{\"file\":\"a.csv\",\"csv\":\"\"}}", STATUS_INVALID, "/data/file", "beside it", 1},
+    {"{\"base\":{\"file\":\"a.csv\"}}", STATUS_INVALID, "/base/file", "no job document", 1},
+    {"{\"base\":{\"file\":\"bad.json\"}}", STATUS_SYNTAX, "/base/file", "line 2 of that file", 0},
+    {"{\"data\":", STATUS_SYNTAX, "", "", 1},
+};
+
+START_TEST(refuses) {
+  struct error error = {.status = STATUS_OK};
+  ck_assert_ptr_null(embed(refusals[_i].text, &error));
+  ck_assert_int_eq(error.status, refusals[_i].status);
+  ck_assert_str_eq(error.pointer, refusals[_i].pointer);
+  ck_assert_msg(strstr(error.message, refusals[_i].phrase) != NULL, "%s", error.message);
+  if (refusals[_i].line > 0) {
+    ck_assert_int_eq(error.line, refusals[_i].line);
+  }
+}
+END_TEST
+
+START_TEST(a_reader_of_jobs_opens_no_files) {
+  static const char *const texts[][2] = {
+      {"{\"kind\":\"response\",\"data\":{\"file\":\"a.csv\"}}", "/data/file"},
+      {"{\"kind\":\"response\",\"measured\":{\"data\":{\"file\":\"a.csv\"}}}",
+       "/measured/data/file"},
+      {"{\"base\":{\"measured\":{\"data\":{\"file\":1}}}}", "/base/measured/data/file"},
+      {"{\"base\":{\"file\":\"x\"}}", "/base/file"}};
+  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    struct job_spec spec;
+    struct error error = {.status = STATUS_OK};
+    ck_assert_int_eq(job_spec_read(texts[i][0], strlen(texts[i][0]), &spec, &error),
+                     STATUS_INVALID);
+    ck_assert_str_eq(error.pointer, texts[i][1]);
+    ck_assert_msg(strstr(error.message, "--embed") != NULL, "%s", error.message);
+    ck_assert_int_ge(error.line, 1);
+  }
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("job: files that it names");
+  TCase *tcase = tcase_create("all");
+  tcase_add_checked_fixture(tcase, set_up, tear_down);
+  tcase_add_test(tcase, text_without_files_is_left_as_it_is);
+  tcase_add_test(tcase, tables_become_text);
+  tcase_add_test(tcase, a_base_becomes_its_document_with_its_own_files);
+  tcase_add_test(tcase, a_base_that_names_itself_ends);
+  tcase_add_loop_test(tcase, refuses, 0, sizeof refusals / sizeof *refusals);
+  tcase_add_test(tcase, a_reader_of_jobs_opens_no_files);
+  suite_add_tcase(suite, tcase);
+  return suite_run(suite);
+}
