@@ -78,6 +78,7 @@ struct pneunet_spec {
   bool has_channel;
   double channel_width, channel_height, channel_cover;
   double taper_top, taper_bottom, taper_left, taper_right;
+  bool scaled_walls; /* tapers thin the walls with the section; else walls keep their thickness */
 };
 
 /* ---- load, accuracy, job ---------------------------------------------------------------- */

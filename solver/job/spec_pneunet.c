@@ -163,7 +163,8 @@ const struct pneunet_dimension pneunet_dimensions[PNEUNET_DIMENSIONS] = {
 
 enum status reader_pneunet(const struct reader *reader, const json_t *actuator,
                            struct pneunet_given *given, struct pneunet_spec *spec) {
-  *spec = (struct pneunet_spec){.run_count = 0};
+  const char *walls = json_string_value(json_object_get(actuator, "tapered_walls"));
+  *spec = (struct pneunet_spec){.scaled_walls = strcmp(walls, "scaled") == 0};
   for (int d = 0; d < PNEUNET_DIMENSIONS; d++) {
     const struct pneunet_dimension *dimension = &pneunet_dimensions[d];
     const json_t *object =

@@ -69,14 +69,42 @@ double pneunet_height(const struct pneunet_spec *p, double x) {
   return height - x * (tan(p->taper_top) + tan(p->taper_bottom));
 }
 
+/* The place in a stretch of length `now`, at the base `base`, of what is at `place` at the base:
+ * `below` of the stretch at its start and `above` of it at its end keep their thickness, the rest
+ * is scaled. */
+static double squeeze(double place, double base, double now, double below, double above) {
+  if (place <= below) {
+    return place;
+  }
+  if (place >= base - above) {
+    return now - (base - place);
+  }
+  return below + (place - below) * (now - below - above) / (base - below - above);
+}
+
+/* Solid layers under the cavities. */
+static double floor_height(const struct pneunet_spec *p) {
+  return p->bottom_layer + (pneunet_detached(p) ? p->slit + p->slit_floor : 0);
+}
+
 static void pneunet_map(const void *context, const double grid_point[3], double x[3]) {
   const struct pneunet_spec *p = context;
   double angle = grid_point[1] > 0 ? p->taper_left : p->taper_right;
-  double narrowing = 1 - 2 * grid_point[0] * tan(angle) / p->width;
+  double side = 0.5 * p->width, narrowed = side - grid_point[0] * tan(angle);
+  double height = pneunet_height(p, grid_point[0]);
+  bool scaled = p->scaled_walls;
   x[0] = grid_point[0];
-  x[1] = grid_point[1] * narrowing;
-  x[2] = grid_point[0] * tan(p->taper_bottom) +
-         grid_point[2] * pneunet_height(p, grid_point[0]) / p->height_base;
+  x[1] = copysign(squeeze(fabs(grid_point[1]), side, narrowed, 0, scaled ? 0 : p->side_wall),
+                  grid_point[1]);
+  x[2] = grid_point[0] * tan(p->taper_bottom) + squeeze(grid_point[2], p->height_base, height,
+                                                        scaled ? 0 : floor_height(p),
+                                                        scaled ? 0 : p->top_wall);
+}
+
+double pneunet_bottom(const struct pneunet_spec *p, double x) {
+  double height = pneunet_height(p, x);
+  double scale = p->scaled_walls ? height / p->height_base : 1;
+  return x * tan(p->taper_bottom) + scale * p->bottom_layer;
 }
 
 bool pneunet_detached(const struct pneunet_spec *p) {
@@ -177,9 +205,9 @@ static enum status lateral_lines(const struct pneunet_spec *p, const struct pneu
   return status == STATUS_OK ? extend_all(axis, list, count) : status;
 }
 
-/* Lines from bottom to top; *core receives the number of lines of the bottom layer. */
+/* Lines from bottom to top. */
 static enum status vertical_lines(const struct pneunet_spec *p, const struct pneunet_cells *n,
-                                  bool detached, struct grid_axis *axis, int *core) {
+                                  bool detached, struct grid_axis *axis) {
   double b = p->bottom_layer, h = p->height_base;
   struct stretch below[3];
   int count = 0;
@@ -195,7 +223,6 @@ static enum status vertical_lines(const struct pneunet_spec *p, const struct pne
   if (status == STATUS_OK) {
     status = extend_all(axis, below, count);
   }
-  *core = axis->line_count;
   struct stretch above[4];
   count = 0;
   if (detached) {
@@ -208,14 +235,12 @@ static enum status vertical_lines(const struct pneunet_spec *p, const struct pne
 }
 
 /* Marks the nodes of the bottom layer, and finds centreline and stations. */
-static enum status mark_sections(const struct pneunet_spec *p, const struct grid *grid, int core,
+static enum status mark_sections(const struct pneunet_spec *p, const struct grid *grid,
                                  const int *station, struct mesh *mesh) {
   const struct grid_axis *axis = grid->axis;
-  double layer = axis[2].line[core - 1];
   for (int n = 0; n < mesh->node_count; n++) {
     const double *x = mesh->x + 3 * (size_t)n;
-    double z = (x[2] - x[0] * tan(p->taper_bottom)) * p->height_base / pneunet_height(p, x[0]);
-    mesh->node_core[n] = z <= layer * (1 + 1e-9);
+    mesh->node_core[n] = x[2] <= pneunet_bottom(p, x[0]) + 1e-9 * p->height_base;
   }
   for (int s = 0; s < mesh->section_count; s++) {
     double position =
@@ -239,14 +264,14 @@ enum status pneunet_mesh_cells(const struct job_spec *spec, const struct pneunet
                                struct mesh *mesh, struct error *error) {
   const struct pneunet_spec *p = &spec->pneunet;
   struct grid grid = {0};
-  int station[CHAMBERS_MAX + 1], core = 0;
+  int station[CHAMBERS_MAX + 1];
   bool detached = pneunet_detached(p);
   enum status status = axial_lines(p, cells, &grid.axis[0], station);
   if (status == STATUS_OK) {
     status = lateral_lines(p, cells, spec->half_model, detached, &grid.axis[1]);
   }
   if (status == STATUS_OK) {
-    status = vertical_lines(p, cells, detached, &grid.axis[2], &core);
+    status = vertical_lines(p, cells, detached, &grid.axis[2]);
   }
   if (status != STATUS_OK) {
     error_set(error, status, NULL, "no memory for the lines of the mesh");
@@ -257,7 +282,7 @@ enum status pneunet_mesh_cells(const struct job_spec *spec, const struct pneunet
     goto done;
   }
   mesh->wall_thickness = fmin(fmin(p->side_wall, p->gap_wall), p->top_wall);
-  status = mark_sections(p, &grid, core, station, mesh);
+  status = mark_sections(p, &grid, station, mesh);
   if (status != STATUS_OK) {
     error_set(error, status, NULL, "no memory for the stations of the mesh");
     mesh_release(mesh);

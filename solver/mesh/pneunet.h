@@ -39,4 +39,7 @@ bool pneunet_detached(const struct pneunet_spec *p);
 /* Height of the undeformed body at x (m), after tapers of top and bottom. */
 double pneunet_height(const struct pneunet_spec *p, double x);
 
+/* z (m) of the top of its bottom layer there. */
+double pneunet_bottom(const struct pneunet_spec *p, double x);
+
 #endif

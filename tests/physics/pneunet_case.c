@@ -20,6 +20,7 @@ void case_prototype(struct job_spec *spec, int chambers) {
   p->bottom_layer = 0.006;
   p->cavity_length = 0.004;
   p->taper_left = p->taper_right = 2 * M_PI / 180;
+  p->scaled_walls = true;
   p->slit = p->slit_floor = 0.001;
   p->stem = 0.004;
   p->channel_width = 0.004;

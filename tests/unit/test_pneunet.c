@@ -14,20 +14,21 @@
 struct variant {
   struct chamber_run runs[3];
   int run_count;
-  bool has_channel, half, tapered;
+  bool has_channel, half, tapered, scaled;
 };
 
 static const struct variant variants[] = {
-    {{{CHAMBER_A, 3}}, 1, false, false, false},
-    {{{CHAMBER_B, 3}}, 1, false, false, false},
-    {{{CHAMBER_C, 3}}, 1, false, false, false},
-    {{{CHAMBER_A, 3}}, 1, true, false, false},
-    {{{CHAMBER_B, 3}}, 1, true, false, true},
-    {{{CHAMBER_C, 3}}, 1, true, false, true},
-    {{{CHAMBER_A, 2}, {CHAMBER_B, 2}, {CHAMBER_C, 2}}, 3, true, false, false},
-    {{{CHAMBER_B, 2}, {CHAMBER_C, 1}, {CHAMBER_A, 2}}, 3, false, false, true},
-    {{{CHAMBER_B, 3}}, 1, false, true, true},
-    {{{CHAMBER_C, 3}}, 1, true, true, false},
+    {{{CHAMBER_A, 3}}, 1, false, false, false, false},
+    {{{CHAMBER_B, 3}}, 1, false, false, false, false},
+    {{{CHAMBER_C, 3}}, 1, false, false, false, false},
+    {{{CHAMBER_A, 3}}, 1, true, false, false, false},
+    {{{CHAMBER_B, 3}}, 1, true, false, true, true},
+    {{{CHAMBER_C, 3}}, 1, true, false, true, false},
+    {{{CHAMBER_A, 2}, {CHAMBER_B, 2}, {CHAMBER_C, 2}}, 3, true, false, false, false},
+    {{{CHAMBER_B, 2}, {CHAMBER_C, 1}, {CHAMBER_A, 2}}, 3, false, false, true, false},
+    {{{CHAMBER_B, 3}}, 1, false, true, true, false},
+    {{{CHAMBER_C, 3}}, 1, true, true, true, true},
+    {{{CHAMBER_C, 3}}, 1, true, true, false, false},
 };
 enum { VARIANTS = sizeof variants / sizeof *variants };
 
@@ -67,6 +68,7 @@ static void fill_spec(const struct variant *v, struct job_spec *spec) {
     p->taper_top = 0.02;
     p->taper_bottom = 0.01;
   }
+  p->scaled_walls = v->scaled;
   spec->half_model = v->half;
 }
 
@@ -93,7 +95,7 @@ static int compare_face(const void *a, const void *b) {
 }
 
 static struct face_key key_of(const struct mesh *mesh, int element, int axis, int side) {
-  struct mesh_face face = {element, (signed char)axis, (signed char)side, 0};
+  struct mesh_face face = {element, (signed char)axis, (signed char)side, 0, 0};
   struct face_key key = {.element = element, .axis = axis, .side = side};
   int nodes[QUAD9_NODES];
   mesh_face_nodes(mesh, &face, nodes);
@@ -299,6 +301,54 @@ START_TEST(volumes_of_the_reference_body) {
 }
 END_TEST
 
+/* Simpson's rule, exact for the areas below, which are quadratic along the body. */
+static double simpson(double from, double length,
+                      double (*area)(const struct pneunet_spec *, double),
+                      const struct pneunet_spec *p) {
+  return length / 6 * (area(p, from) + 4 * area(p, from + 0.5 * length) + area(p, from + length));
+}
+
+static double section_area(const struct pneunet_spec *p, double x) {
+  double width = p->width - x * (tan(p->taper_left) + tan(p->taper_right));
+  return width * pneunet_height(p, x);
+}
+
+static double cavity_area(const struct pneunet_spec *p, double x) {
+  double width = p->width - x * (tan(p->taper_left) + tan(p->taper_right)) - 2 * p->side_wall;
+  return width * (pneunet_height(p, x) - p->bottom_layer - p->top_wall);
+}
+
+static double gap_area(const struct pneunet_spec *p, double x) {
+  double width = p->width - x * (tan(p->taper_left) + tan(p->taper_right));
+  return width * (pneunet_height(p, x) - p->bottom_layer);
+}
+
+/* Walls that keep their thickness in a body that is tapered on all sides, each by another angle. */
+START_TEST(volumes_of_a_tapered_body_with_constant_walls) {
+  struct job_spec spec;
+  struct mesh mesh;
+  case_prototype(&spec, 6);
+  struct pneunet_spec *p = &spec.pneunet;
+  p->scaled_walls = false;
+  p->has_channel = false;
+  p->taper_left = 0.03;
+  p->taper_right = 0.05;
+  p->taper_top = 0.04;
+  p->taper_bottom = 0.02;
+  spec.half_model = false;
+  ck_assert_int_eq(pneunet_mesh(&spec, &mesh, NULL), STATUS_OK);
+  double cavity = 0, gap = 0;
+  for (int c = 0; c < 6; c++) {
+    cavity += simpson(0.010 * c + 0.002, 0.004, cavity_area, p);
+    gap += c < 5 ? simpson(0.010 * c + 0.008, 0.002, gap_area, p) : 0;
+  }
+  double solid = simpson(0, p->length, section_area, p) - gap - cavity;
+  ck_assert_double_eq_tol(cavity_volume(&mesh) / cavity, 1, 1e-9);
+  ck_assert_double_eq_tol(solid_volume(&mesh) / solid, 1, 1e-9);
+  mesh_release(&mesh);
+}
+END_TEST
+
 /* ---- sections, stations, facing pairs ---- */
 
 START_TEST(sections_follow_the_body) {
@@ -311,7 +361,7 @@ START_TEST(sections_follow_the_body) {
     int section = mesh.node_section[n];
     ck_assert_double_eq_tol(mesh.x[3 * n], mesh.x[3 * mesh.centreline[section]], 1e-15);
     double z = mesh.x[3 * n + 2] - mesh.x[3 * n] * tan(p->taper_bottom);
-    z *= p->height_base / pneunet_height(p, mesh.x[3 * n]);
+    z *= p->scaled_walls ? p->height_base / pneunet_height(p, mesh.x[3 * n]) : 1;
     ck_assert_int_eq(mesh.node_core[n], z < p->bottom_layer + 1e-9);
   }
   for (int s = 0; s < mesh.section_count; s++) {
@@ -396,6 +446,7 @@ int main(void) {
   tcase_add_loop_test(pneunet, boundary_is_closed, 0, VARIANTS);
   tcase_add_loop_test(pneunet, volumes_are_those_of_the_geometry, 0, VARIANTS);
   tcase_add_test(pneunet, volumes_of_the_reference_body);
+  tcase_add_test(pneunet, volumes_of_a_tapered_body_with_constant_walls);
   tcase_add_loop_test(pneunet, sections_follow_the_body, 0, VARIANTS);
   tcase_add_loop_test(pneunet, facing_pairs_look_at_each_other, 0, VARIANTS);
   tcase_add_test(pneunet, every_tier_chooses_at_least_one);
