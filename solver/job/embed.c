@@ -57,8 +57,14 @@ static enum status folder_of(const char *path, char **folder) {
 static enum status refuse_file(struct embedding *embedding, const char *name, const char *why) {
   char quoted[160];
   return error_set(embedding->error, STATUS_INVALID, embedding->pointer.text,
-                   "the file %s %s; paths start at the folder of the job's file",
+                   "the file %s %s: paths start at the folder of the job's file",
                    text_quote(quoted, sizeof quoted, name), why);
+}
+
+static enum status refuse_open(struct embedding *embedding, const char *name) {
+  char why[100];
+  snprintf(why, sizeof why, "cannot be opened (%s)", strerror(errno));
+  return refuse_file(embedding, name, why);
 }
 
 /* Reads a whole file into *text, NUL-terminated, owned by the caller. */
@@ -68,7 +74,7 @@ static enum status read_file(struct embedding *embedding, const char *path, cons
   enum status status = STATUS_OK;
   /* Opening a pipe would wait for its writer. */
   if (stat(path, &properties) != 0) {
-    return refuse_file(embedding, name, strerror(errno));
+    return refuse_open(embedding, name);
   }
   if (!S_ISREG(properties.st_mode)) {
     return refuse_file(embedding, name, "is not a regular file");
@@ -77,7 +83,7 @@ static enum status read_file(struct embedding *embedding, const char *path, cons
   char *buffer = malloc(JSON_TEXT_MAX + 2);
   if (!file || !buffer) {
     status = file ? error_set(embedding->error, STATUS_NO_MEMORY, NULL, "no memory for a file")
-                  : refuse_file(embedding, name, strerror(errno));
+                  : refuse_open(embedding, name);
     goto done;
   }
   *size = fread(buffer, 1, JSON_TEXT_MAX + 1, file);
