@@ -1,6 +1,7 @@
 #include "solver/estimate.h"
 
 #include "solver/fe/transfer.h"
+#include "solver/mesh/actuator.h"
 
 /* The difference of two meshes is wanted to a few per cent of itself only. */
 static const double loose_steps = 20;
@@ -32,9 +33,7 @@ static enum status solve_finer(const struct job_spec *spec, const struct solve *
 enum status estimate_finer(const struct job_spec *spec, const struct solve *coarse, double pressure,
                            struct sample *finer, struct error *error) {
   struct solve fine = {0};
-  struct pneunet_cells cells = pneunet_resolution(spec);
-  pneunet_refine(spec, &cells);
-  enum status status = pneunet_mesh_cells(spec, &cells, &fine.mesh, error);
+  enum status status = actuator_mesh_finer(spec, &fine.mesh, error);
   if (status == STATUS_OK) {
     status = solve_prepare(spec, &fine, error);
   }

@@ -5,7 +5,7 @@
 #include "solver/post/sample.h"
 #include "solver/solve.h"
 
-/* Carries the converged state coarse->state to a nested mesh (pneunet_refine), brings it into
+/* Carries the converged state coarse->state to a nested mesh (actuator_mesh_finer), brings it into
  * equilibrium with the same load there and measures it. Time limit and cancellation are those of
  * the coarse solver. `coarse` is only read.
  * STATUS_OK, or why there is no finer solution, with *error: memory, DIVERGED, INVERTED, TIMEOUT

@@ -3,6 +3,7 @@
 #include "solver/base/clock.h"
 #include "solver/estimate.h"
 #include "solver/fe/warm.h"
+#include "solver/mesh/actuator.h"
 #include "solver/post/deck.h"
 #include "solver/post/result.h"
 #include "solver/post/result_sensitivity.h"
@@ -146,7 +147,7 @@ enum status run_job(const struct job_spec *spec, const struct run_options *optio
   if (spec->kind == JOB_VERIFY) {
     return run_verify(spec, options, document, ending, error);
   }
-  enum status status = pneunet_mesh(spec, &run.solve.mesh, error);
+  enum status status = actuator_mesh(spec, &run.solve.mesh, error);
   if (status != STATUS_OK) {
     return status;
   }

@@ -11,6 +11,9 @@ enum status solve_prepare(const struct job_spec *spec, struct solve *solve, stru
   if (status != STATUS_OK) {
     return status;
   }
+  for (int c = 0; c < MESH_CAVITIES; c++) {
+    solve->model->cavity_share[c] = spec->load.cavity_share[c];
+  }
   if (solve_has_gravity(spec)) {
     model_add_gravity(solve->model, spec->load.gravity);
   }

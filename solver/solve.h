@@ -4,7 +4,6 @@
 
 #include "solver/fe/equilibrium.h"
 #include "solver/job/spec.h"
-#include "solver/mesh/pneunet.h"
 
 struct solve {
   struct mesh mesh;

@@ -43,12 +43,6 @@ static bool has_effect(const struct job_spec *spec, const char *group, const cha
   if (strcmp(key, "chamber_gap") == 0) {
     return p->chamber_gap > 0;
   }
-  if (strcmp(key, "gap_root") == 0) {
-    return p->chamber_gap > 0 && p->gap_shape != GAP_RECTANGULAR;
-  }
-  if (strcmp(key, "gap_round") == 0) {
-    return p->chamber_gap > 0 && p->gap_shape == GAP_U;
-  }
   if (!group && strcmp(key, "length") == 0) {
     return isnan(spec->given.chamber_length);
   }
@@ -77,7 +71,9 @@ int parameter_list(const struct job_spec *spec, struct job_parameter list[PARAME
   const size_t c = material + offsetof(struct material_spec, c);
   const size_t alpha = material + offsetof(struct material_spec, alpha);
   int count = 0;
-  list_dimensions(spec, list, &count);
+  if (spec->family == FAMILY_PNEUNET) {
+    list_dimensions(spec, list, &count);
+  }
   switch (m->model) {
   case MATERIAL_NEO_HOOKE:
     append(list, &count, "MPa", c, "/material/mu");
@@ -111,7 +107,9 @@ double parameter_value(const struct job_spec *spec, const struct job_parameter *
 enum status parameter_set(struct job_spec *spec, const struct job_parameter *parameter,
                           double value, struct error *error) {
   *(double *)((char *)spec + parameter->offset) = value;
-  enum status status = pneunet_derive(&spec->given, &spec->pneunet, error);
+  enum status status = spec->family == FAMILY_PNEUNET
+                           ? pneunet_derive(&spec->given, &spec->pneunet, error)
+                           : STATUS_OK;
   spec->half_model = reader_half_model(spec);
   return status;
 }

@@ -4,7 +4,7 @@
 
 #include "solver/job/spec.h"
 
-enum { PNEUNET_DIMENSIONS = 23 };
+enum { PNEUNET_DIMENSIONS = 21 };
 
 /* Where a dimension stands in the actuator and in struct pneunet_given. */
 struct pneunet_dimension {
@@ -21,8 +21,8 @@ extern const struct pneunet_dimension pneunet_dimensions[PNEUNET_DIMENSIONS];
 enum status pneunet_derive(const struct pneunet_given *given, struct pneunet_spec *spec,
                            struct error *error);
 
-/* The parameters of a job: every dimension that it gives or that has a fixed default and that has
- * an effect on its body, then the coefficients of its material (of a built-in one as well). Where
+/* The parameters of a job: every dimension of a pneunet that it gives or that has a fixed default
+ * and that has an effect on its body, then the coefficients of its material (of a built-in one as well). Where
  * both lengths are given, that of the chamber counts. Returns their number. */
 int parameter_list(const struct job_spec *spec, struct job_parameter list[PARAMETERS_MAX]);
 

@@ -31,8 +31,15 @@ void reader_copy(char *field, size_t size, const char *text);
  * STATUS_INVALID or STATUS_GEOMETRY with the pointer to the member that has to change. */
 enum status reader_pneunet(const struct reader *reader, const json_t *actuator,
                            struct pneunet_given *given, struct pneunet_spec *spec);
+enum status reader_oblique(const struct reader *reader, const json_t *actuator,
+                           struct oblique_spec *spec);
 enum status reader_material(const struct reader *reader, const json_t *material,
                             struct material_spec *spec);
+
+/* The load of a body of `family`. STATUS_OK, or STATUS_INVALID for pressures that it does not
+ * have. */
+enum status reader_load(const struct reader *reader, const json_t *load,
+                        enum actuator_family family, struct load_spec *spec);
 
 /* Fills spec->sensitivity from the value of the key (NULL: no derivatives); the rest of the spec
  * has been read. STATUS_OK, or STATUS_INVALID for a pointer that names no parameter. */
@@ -46,6 +53,14 @@ bool reader_half_model(const struct job_spec *spec);
 /* Whether a body of these dimensions can exist. STATUS_OK, or STATUS_GEOMETRY with the pointer
  * to the dimension that has to change, the reason and the limit. */
 enum status pneunet_check(const struct pneunet_spec *spec, struct error *error);
+
+/* As pneunet_check, for a body with oblique chambers. chambers_given: the job says how many;
+ * otherwise as many as fit are counted into spec->chamber_count. Derives spec->end, which must hold
+ * the least one. */
+enum status oblique_fit(bool chambers_given, struct oblique_spec *spec, struct error *error);
+
+/* Largest angle to the cross-section, rad. */
+#define OBLIQUE_ANGLE_MAX (80.0 / 180.0 * 3.14159265358979323846)
 
 /* SHA-256 of the canonical text of the document (sorted keys, no spaces, whole reals as integers)
  * without name, labels and comments, as 64 hexadecimal digits. STATUS_OK or STATUS_NO_MEMORY. */

@@ -77,16 +77,6 @@ void reader_copy(char *field, size_t size, const char *text) {
 
 /* ---- parts of a response job ------------------------------------------------------------ */
 
-static void read_load(const struct reader *reader, const json_t *load, struct load_spec *spec) {
-  const json_t *pressure = json_object_get(load, "pressure");
-  spec->pressure_to = reader_member(reader, pressure, "to", "kPa", 0.0);
-  spec->steps = reader_count(pressure, "steps", 0);
-  const json_t *gravity = json_object_get(load, "gravity");
-  for (size_t i = 0; i < 3; i++) {
-    spec->gravity[i] = reader_quantity(reader, json_array_get(gravity, i), "m/s2");
-  }
-}
-
 static enum status read_planes(const struct reader *reader, const json_t *planes,
                                struct job_spec *spec) {
   size_t index;
@@ -156,13 +146,27 @@ static enum accuracy read_accuracy(const char *word) {
                                      : ACCURACY_STANDARD;
 }
 
+static enum actuator_family read_family(const char *word) {
+  return strcmp(word, "oblique-pneunet") == 0 ? FAMILY_OBLIQUE : FAMILY_PNEUNET;
+}
+
 bool reader_half_model(const struct job_spec *spec) {
   const struct pneunet_spec *p = &spec->pneunet;
-  bool symmetric = p->taper_left == p->taper_right && spec->load.gravity[1] == 0.0;
+  const double *share = spec->load.cavity_share;
+  bool body =
+      spec->family == FAMILY_OBLIQUE ? share[0] == share[1] : p->taper_left == p->taper_right;
+  bool symmetric = body && spec->load.gravity[1] == 0.0;
   for (int k = 0; k < spec->plane_count; k++) {
     symmetric = symmetric && spec->plane[k].normal[1] == 0.0;
   }
   return symmetric && !spec->whole_model;
+}
+
+static enum status read_actuator(const struct reader *reader, const json_t *actuator,
+                                 struct job_spec *spec) {
+  return spec->family == FAMILY_OBLIQUE
+             ? reader_oblique(reader, actuator, &spec->oblique)
+             : reader_pneunet(reader, actuator, &spec->given, &spec->pneunet);
 }
 
 /* The document has passed the schema and its defaults are filled in. */
@@ -176,12 +180,17 @@ static enum status read_response(const struct reader *reader, const json_t *docu
   spec->whole_model = strcmp(symmetry, "none") == 0;
   spec->error_estimate = json_is_true(json_object_get(document, "error_estimate"));
   spec->timeout_s = reader_member(reader, document, "timeout", "s", 0.0);
-  read_load(reader, json_object_get(document, "load"), &spec->load);
+  const json_t *actuator = json_object_get(document, "actuator");
+  spec->family = read_family(json_string_value(json_object_get(actuator, "family")));
   read_mesh(json_object_get(document, "mesh"), &spec->mesh);
   const json_t *metrics = json_object_get(document, "metrics");
-  double to = spec->load.pressure_to;
   enum status status =
-      read_range(reader, metrics, "fit_range", to, &spec->metrics.fit_from, &spec->metrics.fit_to);
+      reader_load(reader, json_object_get(document, "load"), spec->family, &spec->load);
+  double to = spec->load.pressure_to;
+  if (status == STATUS_OK) {
+    status = read_range(reader, metrics, "fit_range", to, &spec->metrics.fit_from,
+                        &spec->metrics.fit_to);
+  }
   if (status == STATUS_OK) {
     status = read_range(reader, metrics, "cai_range", to, &spec->metrics.cai_from,
                         &spec->metrics.cai_to);
@@ -193,8 +202,7 @@ static enum status read_response(const struct reader *reader, const json_t *docu
     status = reader_material(reader, json_object_get(document, "material"), &spec->material);
   }
   if (status == STATUS_OK) {
-    status =
-        reader_pneunet(reader, json_object_get(document, "actuator"), &spec->given, &spec->pneunet);
+    status = read_actuator(reader, actuator, spec);
   }
   if (status == STATUS_OK) {
     status = reader_sensitivity(reader, json_object_get(document, "sensitivity"), spec);

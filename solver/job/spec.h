@@ -41,16 +41,6 @@ enum chamber_config {
   CHAMBER_C  /* detached from the bottom layer but for a stem around the channel */
 };
 
-/* How the width of a gap changes from gap_root at its root (z = 0) to chamber_gap g at its top
- * (z = h) in the base section. The cavities are rectangular whatever the gap: what it loses, the
- * walls gain.
- *   rectangular:     g
- *   U:               gap_root + (g - gap_root) sqrt(1 - (1 - z/d)^2) below d = gap_round, then g:
- *                    a flat floor between two quarters of ellipses, of circles for d = (g -
- *                    gap_root) / 2
- *   V, trapezoidal:  gap_root + (g - gap_root) z/h; they differ in the default of gap_root */
-enum gap_shape { GAP_RECTANGULAR, GAP_U, GAP_V, GAP_TRAPEZOIDAL };
-
 struct chamber_run {
   enum chamber_config config;
   int count;
@@ -61,7 +51,7 @@ enum { CHAMBER_RUNS_MAX = 32, CHAMBERS_MAX = 64 };
 /* The dimensions as the job gives them, in m and rad; NAN where it is silent. */
 struct pneunet_given {
   double length, chamber_length, width, height, height_base, height_tip;
-  double chamber_gap, gap_root, gap_round, side_wall, gap_wall, top_wall, bottom_layer;
+  double chamber_gap, side_wall, gap_wall, top_wall, bottom_layer;
   double slit, slit_floor, stem;
   double channel_width, channel_height, channel_cover;
   double taper_top, taper_bottom, taper_left, taper_right;
@@ -77,10 +67,7 @@ struct pneunet_spec {
   struct chamber_run runs[CHAMBER_RUNS_MAX];
   int run_count;
   int chamber_count;
-  double chamber_gap; /* width of the gaps at the top */
-  enum gap_shape gap_shape;
-  double gap_root;  /* width of the gaps at the root; chamber_gap when rectangular */
-  double gap_round; /* height of the rounded bottom of a U */
+  double chamber_gap;
   double side_wall; /* thickness of the walls at y = +-width/2 */
   double gap_wall;  /* axial walls, facing gaps and at both ends */
   double top_wall;
@@ -94,12 +81,35 @@ struct pneunet_spec {
   bool scaled_walls; /* tapers thin the walls with the section; else walls keep their thickness */
 };
 
+/* Two rows of chambers, mirrored about y = 0, whose walls cross the body at an angle. Lengths in m.
+ * x, y, z as above; a wall that starts at x = xi in the middle is at x = xi + tan(angle) |y|. Sizes
+ * of chambers, walls and gaps are normal to the walls, so along x they are 1/cos(angle) as large.
+ */
+struct oblique_spec {
+  double length, width, height;
+  double angle;       /* of the walls to the cross-section, rad, 0 to OBLIQUE_ANGLE_MAX */
+  int chamber_count;  /* in each row */
+  double cavity;      /* extent of a cavity normal to its walls */
+  double chamber_gap; /* distance of neighbouring chambers */
+  double gap_wall;    /* walls that face gaps */
+  double centre_wall; /* between the rows */
+  double side_wall;   /* at y = +-width/2 */
+  double top_wall, bottom_layer;
+  double end;       /* solid at the base along y = 0 and at the tip along the side faces */
+  bool spine;       /* whether the centre wall crosses the gaps */
+  bool has_channel; /* one under each row */
+  double channel_width, channel_height, channel_cover;
+};
+
+enum actuator_family { FAMILY_PNEUNET, FAMILY_OBLIQUE };
+
 /* ---- load, accuracy, job ---------------------------------------------------------------- */
 
 struct load_spec {
-  double pressure_to; /* Pa */
-  int steps;          /* recorded at k/steps of pressure_to, k = 0 .. steps */
-  double gravity[3];  /* m/s2 */
+  double pressure_to;     /* Pa, in the cavity of the highest pressure */
+  double cavity_share[2]; /* pressure in each cavity relative to that; 0 is the row at +y */
+  int steps;              /* recorded at k/steps of pressure_to, k = 0 .. steps */
+  double gravity[3];      /* m/s2 */
 };
 
 enum accuracy { ACCURACY_FAST, ACCURACY_STANDARD, ACCURACY_FINE };
@@ -148,8 +158,10 @@ struct verify_spec {
 struct job_spec {
   enum job_kind kind;
   char name[200];
-  struct pneunet_given given; /* what pneunet is derived from */
+  enum actuator_family family;
+  struct pneunet_given given; /* of FAMILY_PNEUNET: what pneunet is derived from */
   struct pneunet_spec pneunet;
+  struct oblique_spec oblique; /* of FAMILY_OBLIQUE */
   struct material_spec material;
   struct load_spec load;
   struct mesh_spec mesh;
@@ -166,9 +178,9 @@ struct job_spec {
   double timeout_s;    /* 0: none */
   char hash[65];       /* SHA-256 of the canonical job text: sorted keys, defaults filled in, no
                         * name, labels and comments; 64 hexadecimal digits */
-  json_t *document;    /* of a job whose data have no bound (tables, members of a study) the document
-                        * with its defaults filled in, otherwise NULL; owned by the spec as read,
-                        * borrowed by its copies */
+  json_t *document; /* of a job whose data have no bound (tables, members of a study) the document
+                     * with its defaults filled in, otherwise NULL; owned by the spec as read,
+                     * borrowed by its copies */
 };
 
 /* What every reading of a job needs: unit database and schema. One reader may be used by several

@@ -2,8 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include "solver/mesh/grid.h"
-#include "solver/mesh/pneunet_map.h"
+#include "solver/mesh/stretch.h"
 
 /* Features along the body, carrying the chamber's configuration. */
 enum axial_tag {
@@ -36,7 +35,7 @@ static bool tag_is_void_axial(int tag) {
 }
 
 static int pneunet_cell(const void *context, const int tag[3]) {
-  const struct pneunet_spec *p = ((const struct pneunet_map *)context)->p;
+  const struct pneunet_spec *p = context;
   int axial = tag[0], lateral = tag[1], vertical = tag[2];
   bool over_channel = p->has_channel && lateral == LATERAL_CHANNEL;
   bool detached = axial == AXIAL_CAVITY_C || axial == AXIAL_WALL_C || axial == AXIAL_END_C;
@@ -65,31 +64,55 @@ static int pneunet_cell(const void *context, const int tag[3]) {
   return hollow ? CELL_CAVITY : CELL_SOLID;
 }
 
+double pneunet_height(const struct pneunet_spec *p, double x) {
+  double height = p->height_base + (p->height_tip - p->height_base) * x / p->length;
+  return height - x * (tan(p->taper_top) + tan(p->taper_bottom));
+}
+
+/* The place in a stretch of length `now`, at the base `base`, of what is at `place` at the base:
+ * `below` of the stretch at its start and `above` of it at its end keep their thickness, the rest
+ * is scaled. */
+static double squeeze(double place, double base, double now, double below, double above) {
+  if (place <= below) {
+    return place;
+  }
+  if (place >= base - above) {
+    return now - (base - place);
+  }
+  return below + (place - below) * (now - below - above) / (base - below - above);
+}
+
+/* Solid layers under the cavities. */
+static double floor_height(const struct pneunet_spec *p) {
+  return p->bottom_layer + (pneunet_detached(p) ? p->slit + p->slit_floor : 0);
+}
+
+static void pneunet_map(const void *context, const double grid_point[3], double x[3]) {
+  const struct pneunet_spec *p = context;
+  double angle = grid_point[1] > 0 ? p->taper_left : p->taper_right;
+  double side = 0.5 * p->width, narrowed = side - grid_point[0] * tan(angle);
+  double height = pneunet_height(p, grid_point[0]);
+  bool scaled = p->scaled_walls;
+  x[0] = grid_point[0];
+  x[1] = copysign(squeeze(fabs(grid_point[1]), side, narrowed, 0, scaled ? 0 : p->side_wall),
+                  grid_point[1]);
+  x[2] = grid_point[0] * tan(p->taper_bottom) + squeeze(grid_point[2], p->height_base, height,
+                                                        scaled ? 0 : floor_height(p),
+                                                        scaled ? 0 : p->top_wall);
+}
+
+double pneunet_bottom(const struct pneunet_spec *p, double x) {
+  double height = pneunet_height(p, x);
+  double scale = p->scaled_walls ? height / p->height_base : 1;
+  return x * tan(p->taper_bottom) + scale * p->bottom_layer;
+}
+
 bool pneunet_detached(const struct pneunet_spec *p) {
   bool detached = false;
   for (int r = 0; r < p->run_count; r++) {
     detached = detached || p->runs[r].config == CHAMBER_C;
   }
   return detached;
-}
-
-/* One stretch of a grid axis. */
-struct stretch {
-  double end;
-  const struct grid_division *division;
-  int tag;
-};
-
-/* Appends stretches in order, leaving out those of no extent. */
-static enum status extend_all(struct grid_axis *axis, const struct stretch *list, int count) {
-  enum status status = STATUS_OK;
-  for (int s = 0; s < count && status == STATUS_OK; s++) {
-    double start = axis->line[axis->line_count - 1];
-    if (list[s].end > start + 1e-12) {
-      status = grid_axis_divide(axis, list[s].end, list[s].division, list[s].tag);
-    }
-  }
-  return status;
 }
 
 static enum chamber_config config_of(const struct pneunet_spec *p, int chamber) {
@@ -101,10 +124,9 @@ static enum chamber_config config_of(const struct pneunet_spec *p, int chamber) 
 }
 
 /* Lines along the body; station[c] receives the line where chamber c starts, and
- * station[chamber_count] the last line; the map receives the gaps. */
-static enum status axial_lines(struct pneunet_map *map, const struct pneunet_cells *n,
+ * station[chamber_count] the last line. */
+static enum status axial_lines(const struct pneunet_spec *p, const struct pneunet_cells *n,
                                struct grid_axis *axis, int *station) {
-  const struct pneunet_spec *p = map->p;
   double x = 0;
   enum status status = grid_axis_extend(axis, 0, 0, 0);
   bool shared_wall = false;
@@ -125,10 +147,9 @@ static enum status axial_lines(struct pneunet_map *map, const struct pneunet_cel
     int after = joint ? AXIAL_JOINT : last ? end : wall;
     list[count++] = (struct stretch){x += p->gap_wall, &n->gap_wall, after};
     if (!last && !joint) {
-      map->gap[map->gap_count++] = x + 0.5 * p->chamber_gap;
       list[count++] = (struct stretch){x += p->chamber_gap, &n->gap, AXIAL_GAP};
     }
-    status = extend_all(axis, list, count);
+    status = stretch_extend(axis, list, count);
     shared_wall = joint;
   }
   station[p->chamber_count] = axis->line_count - 1;
@@ -149,20 +170,8 @@ static enum status lateral_lines(const struct pneunet_spec *p, const struct pneu
   double side = 0.5 * p->width;
   list[count++] = (struct stretch){side - p->side_wall, &n->half_width, LATERAL_INNER};
   list[count++] = (struct stretch){side, &n->side_wall, LATERAL_SIDE};
-  enum status status = STATUS_OK;
-  if (!half) {
-    status = grid_axis_extend(axis, -side, 0, 0);
-    for (int s = count - 1; s >= 0 && status == STATUS_OK; s--) {
-      struct grid_division division = *list[s].division;
-      division.first = list[s].division->last;
-      division.last = list[s].division->first;
-      struct stretch mirrored = {s > 0 ? -list[s - 1].end : 0, &division, list[s].tag};
-      status = extend_all(axis, &mirrored, 1);
-    }
-  } else {
-    status = grid_axis_extend(axis, 0, 0, 0);
-  }
-  return status == STATUS_OK ? extend_all(axis, list, count) : status;
+  enum status status = half ? grid_axis_extend(axis, 0, 0, 0) : stretch_mirror(axis, list, count);
+  return status == STATUS_OK ? stretch_extend(axis, list, count) : status;
 }
 
 /* Lines from bottom to top. */
@@ -181,7 +190,7 @@ static enum status vertical_lines(const struct pneunet_spec *p, const struct pne
   }
   enum status status = grid_axis_extend(axis, 0, 0, 0);
   if (status == STATUS_OK) {
-    status = extend_all(axis, below, count);
+    status = stretch_extend(axis, below, count);
   }
   struct stretch above[4];
   count = 0;
@@ -191,13 +200,12 @@ static enum status vertical_lines(const struct pneunet_spec *p, const struct pne
   }
   above[count++] = (struct stretch){h - p->top_wall, &n->height, VERTICAL_CAVITY};
   above[count++] = (struct stretch){h, &n->top, VERTICAL_TOP};
-  return status == STATUS_OK ? extend_all(axis, above, count) : status;
+  return status == STATUS_OK ? stretch_extend(axis, above, count) : status;
 }
 
 /* Marks the nodes of the bottom layer, and finds centreline and stations. */
-static enum status mark_sections(const struct pneunet_map *map, const struct grid *grid,
+static enum status mark_sections(const struct pneunet_spec *p, const struct grid *grid,
                                  const int *station, struct mesh *mesh) {
-  const struct pneunet_spec *p = map->p;
   const struct grid_axis *axis = grid->axis;
   for (int n = 0; n < mesh->node_count; n++) {
     const double *x = mesh->x + 3 * (size_t)n;
@@ -207,7 +215,7 @@ static enum status mark_sections(const struct pneunet_map *map, const struct gri
     double position =
         s % 2 ? 0.5 * (axis[0].line[s / 2] + axis[0].line[s / 2 + 1]) : axis[0].line[s / 2];
     double x[3];
-    pneunet_map_point(map, (double[3]){position, 0, 0}, x);
+    pneunet_map(p, (double[3]){position, 0, 0}, x);
     mesh->centreline[s] = grid_find_node(mesh, x, s);
   }
   mesh->station_count = p->chamber_count + 1;
@@ -225,10 +233,9 @@ enum status pneunet_mesh_cells(const struct job_spec *spec, const struct pneunet
                                struct mesh *mesh, struct error *error) {
   const struct pneunet_spec *p = &spec->pneunet;
   struct grid grid = {0};
-  struct pneunet_map map = {.p = p};
   int station[CHAMBERS_MAX + 1];
   bool detached = pneunet_detached(p);
-  enum status status = axial_lines(&map, cells, &grid.axis[0], station);
+  enum status status = axial_lines(p, cells, &grid.axis[0], station);
   if (status == STATUS_OK) {
     status = lateral_lines(p, cells, spec->half_model, detached, &grid.axis[1]);
   }
@@ -239,15 +246,12 @@ enum status pneunet_mesh_cells(const struct job_spec *spec, const struct pneunet
     error_set(error, status, NULL, "no memory for the lines of the mesh");
     goto done;
   }
-  status = grid_mesh(&grid, spec->half_model, pneunet_cell, pneunet_map_point, &map, mesh, error);
+  status = grid_mesh(&grid, spec->half_model, pneunet_cell, pneunet_map, p, mesh, error);
   if (status != STATUS_OK) {
     goto done;
   }
-  if (mesh->facing_count > 0 && map.gap_count > 0) {
-    mesh->gap_width = fmin(mesh->gap_width, pneunet_gap_width(p, 0));
-  }
   mesh->wall_thickness = fmin(fmin(p->side_wall, p->gap_wall), p->top_wall);
-  status = mark_sections(&map, &grid, station, mesh);
+  status = mark_sections(p, &grid, station, mesh);
   if (status != STATUS_OK) {
     error_set(error, status, NULL, "no memory for the stations of the mesh");
     mesh_release(mesh);

@@ -67,15 +67,29 @@ static void write_node_set(FILE *file, const struct mesh *mesh, const char *name
   }
 }
 
+/* The faces of one kind, of a FACE_CAVITY those of one cavity only. */
 static void write_surface(FILE *file, const struct mesh *mesh, const char *name,
-                          enum face_kind kind) {
+                          enum face_kind kind, int cavity) {
   fprintf(file, "*SURFACE, NAME=%s, TYPE=ELEMENT\n", name);
   for (int f = 0; f < mesh->face_count; f++) {
-    if (mesh->faces[f].kind == kind) {
+    if (mesh->faces[f].kind == kind && mesh->faces[f].cavity == cavity) {
       fprintf(file, "%d, S%d\n", mesh->faces[f].element + 1, deck_face(&mesh->faces[f]));
     }
   }
 }
+
+/* Highest number of a cavity; -1 for a body without any. */
+static int last_cavity(const struct mesh *mesh) {
+  int last = -1;
+  for (int f = 0; f < mesh->face_count; f++) {
+    if (mesh->faces[f].kind == FACE_CAVITY && mesh->faces[f].cavity > last) {
+      last = mesh->faces[f].cavity;
+    }
+  }
+  return last;
+}
+
+static const char *const cavity_name[MESH_CAVITIES] = {"CAVITY", "CAVITY2"};
 
 static enum status write_mesh(FILE *file, const struct mesh *mesh, const char *type) {
   unsigned char *used = calloc((size_t)mesh->node_count + 1, 1);
@@ -92,8 +106,10 @@ static enum status write_mesh(FILE *file, const struct mesh *mesh, const char *t
     if (mesh->half) {
       write_node_set(file, mesh, "SYMMETRY", FACE_SYMMETRY, used, chosen);
     }
-    write_surface(file, mesh, "CAVITY", FACE_CAVITY);
-    write_surface(file, mesh, "OUTER", FACE_OUTER);
+    for (int c = 0; c <= last_cavity(mesh); c++) {
+      write_surface(file, mesh, cavity_name[c], FACE_CAVITY, c);
+    }
+    write_surface(file, mesh, "OUTER", FACE_OUTER, 0);
     fputs("*BOUNDARY\nFIXED, 1, 3\n", file);
     fputs(mesh->half ? "SYMMETRY, 2, 2\n" : "", file);
   }
@@ -157,11 +173,14 @@ static enum status write_material(FILE *file, const struct material_spec *m, str
   return STATUS_OK;
 }
 
-static void write_step(FILE *file, const struct load_spec *load) {
+static void write_step(FILE *file, const struct mesh *mesh, const struct load_spec *load) {
   /* CalculiX takes the follower pressure at the geometry where an increment began: only small
    * increments give its value at the end (0.5 % too much bending with increments of 0.2). */
   fputs("*STEP, NLGEOM, INC=1000\n*STATIC\n0.02, 1., 1e-6, 0.02\n", file);
-  fprintf(file, "*DSLOAD\nCAVITY, P, %.10g\n", 1e-6 * load->pressure_to);
+  for (int c = 0; c <= last_cavity(mesh); c++) {
+    fprintf(file, "*DSLOAD\n%s, P, %.10g\n", cavity_name[c],
+            1e-6 * load->cavity_share[c] * load->pressure_to);
+  }
   const double *g = load->gravity;
   double size = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
   if (size > 0) {
@@ -191,7 +210,7 @@ enum status deck_print(const struct mesh *mesh, const struct job_spec *spec,
   }
   enum status status = write_material(file, &spec->material, error);
   if (status == STATUS_OK) {
-    write_step(file, &spec->load);
+    write_step(file, mesh, &spec->load);
   }
   return status;
 }

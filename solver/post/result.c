@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/resource.h>
+#include "solver/mesh/actuator.h"
 #include "solver/post/fit.h"
 #include "solver/post/result_internal.h"
 
@@ -223,7 +224,7 @@ static json_t *metrics_object(const struct result *r) {
     set_real(o, "r_squared", fit.r_squared);
   }
   if (fit_angle(r, m->cai_from, m->cai_to, &fit)) {
-    set_real(o, "cai_rad_per_m_kPa", fit.slope * degree / r->spec->pneunet.length);
+    set_real(o, "cai_rad_per_m_kPa", fit.slope * degree / actuator_length(r->spec));
   }
   set_real(o, "tip_deflection_mm", 1e3 * s->tip_deflection);
   set_spatial(o, &s->spatial);

@@ -9,7 +9,7 @@
 struct result_sensitivity;
 
 /* Prepares the derivatives that spec->sensitivity asks for, at states of `model`. Both must outlive
- * the result, which the caller owns. STATUS_OK or the failures of model_create and pneunet_mesh. */
+ * the result, which the caller owns. STATUS_OK or the failures of model_create and actuator_mesh. */
 enum status result_sensitivity_create(const struct job_spec *spec, const struct fe_model *model,
                                       struct result_sensitivity **out, struct error *error);
 void result_sensitivity_destroy(struct result_sensitivity *r);

@@ -4,6 +4,7 @@
 #include "solver/base/clock.h"
 #include "solver/fe/path.h"
 #include "solver/fe/transfer.h"
+#include "solver/mesh/pneunet.h"
 #include "solver/post/sample.h"
 #include "solver/run.h"
 #include "solver/solve.h"
