@@ -11,6 +11,7 @@
 #include "solver/job/embed.h"
 #include "solver/job/json.h"
 #include "solver/run.h"
+#include "solver/study/study_run.h"
 
 enum exit_code {
   EXIT_SUCCEEDED = 0,
@@ -33,7 +34,7 @@ static bool cancelled(void *context) {
 }
 
 static const char usage[] =
-    "usage: pneulab-solve [--out DIR] [--events FILE] [--threads N] [--deck FILE]\n"
+    "usage: pneulab-solve [--out DIR] [--events FILE] [--threads N] [--jobs N] [--deck FILE]\n"
     "                     [--path-in FILE] [--path-out FILE] [--verbose] JOB.json\n"
     "       pneulab-solve --embed JOB.json\n"
     "  JOB.json        job document; - reads standard input. Files that it names, as in\n"
@@ -43,6 +44,7 @@ static const char usage[] =
     "  --out DIR       write fields, tables and a CalculiX deck there; made when missing\n"
     "  --events FILE   append progress as JSON lines\n"
     "  --threads N     threads of the dense linear algebra (default 1)\n"
+    "  --jobs N        members of a study that are solved at a time (default: number of cores)\n"
     "  --deck FILE     write the problem as a CalculiX deck instead of solving it\n"
     "  --path-out FILE keep the path of converged states there\n"
     "  --path-in FILE  start from such a path of a design with the same mesh topology; where that\n"
@@ -53,23 +55,19 @@ static const char usage[] =
 
 struct arguments {
   const char *job, *events;
-  int threads;
+  int threads, jobs;
   bool embed; /* print the self-contained job instead of running it */
   struct run_options run;
 };
 
 static bool parse_arguments(int argc, char **argv, struct arguments *a) {
-  static const struct option options[] = {{"out", required_argument, NULL, 'o'},
-                                          {"events", required_argument, NULL, 'e'},
-                                          {"threads", required_argument, NULL, 't'},
-                                          {"deck", required_argument, NULL, 'd'},
-                                          {"path-in", required_argument, NULL, 'i'},
-                                          {"path-out", required_argument, NULL, 'p'},
-                                          {"verbose", no_argument, NULL, 'v'},
-                                          {"embed", no_argument, NULL, 'm'},
-                                          {"version", no_argument, NULL, 'V'},
-                                          {"help", no_argument, NULL, 'h'},
-                                          {0}};
+  static const struct option options[] = {
+      {"out", required_argument, NULL, 'o'},     {"events", required_argument, NULL, 'e'},
+      {"threads", required_argument, NULL, 't'}, {"deck", required_argument, NULL, 'd'},
+      {"path-in", required_argument, NULL, 'i'}, {"path-out", required_argument, NULL, 'p'},
+      {"jobs", required_argument, NULL, 'j'},    {"verbose", no_argument, NULL, 'v'},
+      {"embed", no_argument, NULL, 'm'},         {"version", no_argument, NULL, 'V'},
+      {"help", no_argument, NULL, 'h'},          {0}};
   int option;
   while ((option = getopt_long(argc, argv, "h", options, NULL)) != -1) {
     switch (option) {
@@ -81,6 +79,9 @@ static bool parse_arguments(int argc, char **argv, struct arguments *a) {
       break;
     case 't':
       a->threads = atoi(optarg);
+      break;
+    case 'j':
+      a->jobs = atoi(optarg);
       break;
     case 'd':
       a->run.deck_path = optarg;
@@ -108,7 +109,8 @@ static bool parse_arguments(int argc, char **argv, struct arguments *a) {
     }
   }
   a->job = optind + 1 == argc ? argv[optind] : NULL;
-  return a->job && a->threads >= 1 && a->threads <= 256;
+  return a->job && a->threads >= 1 && a->threads <= 256 && a->jobs >= 0 &&
+         a->jobs <= STUDY_JOBS_MAX;
 }
 
 /* Reads the job's text. One byte more than a job may have is read, so that an oversized one is
@@ -196,6 +198,26 @@ static enum status read_spec(const struct arguments *a, struct job_spec *spec,
   return status;
 }
 
+static enum status run(const struct job_spec *spec, const struct arguments *a, json_t **document,
+                       enum status *ending, struct error *error) {
+  if (spec->kind != JOB_STUDY) {
+    return run_job(spec, &a->run, document, ending, error);
+  }
+  if (a->run.deck_path || a->run.path_in || a->run.path_out) {
+    return error_set(error, STATUS_INVALID, "/kind",
+                     "a study has no deck and no path of its own: its members have");
+  }
+  struct study_options study = {
+      .out_dir = a->run.out_dir,
+      .events = a->run.events,
+      .jobs = a->jobs,
+      .threads = a->threads,
+      .verbose = a->run.verbose,
+      .cancelled = a->run.cancelled,
+  };
+  return study_run(spec, &study, document, ending, error);
+}
+
 int main(int argc, char **argv) {
   struct arguments a = {.threads = 1, .run.cancelled = cancelled};
   struct error error = {0};
@@ -221,7 +243,7 @@ int main(int argc, char **argv) {
   }
   json_t *document = NULL;
   enum status ending = STATUS_OK;
-  enum status status = run_job(&spec, &a.run, &document, &ending, &error);
+  enum status status = run(&spec, &a, &document, &ending, &error);
   if (a.run.events) {
     fclose(a.run.events);
   }

@@ -14,6 +14,9 @@ struct reader {
   struct error *error;
 };
 
+/* The unit database of a job reader. */
+const struct units *job_reader_units(const struct job_reader *reader);
+
 /* The quantity `text` in SI, `unit` as in the schema. */
 double reader_quantity(const struct reader *reader, const json_t *text, const char *unit);
 

@@ -9,6 +9,7 @@
 #include "solver/job/json.h"
 #include "solver/job/reader.h"
 #include "solver/job/schema.h"
+#include "solver/job/study.h"
 
 struct job_reader {
   struct units *units;
@@ -41,6 +42,10 @@ void job_reader_destroy(struct job_reader *reader) {
   schema_destroy(reader->schema);
   units_destroy(reader->units);
   free(reader);
+}
+
+const struct units *job_reader_units(const struct job_reader *reader) {
+  return reader->units;
 }
 
 /* ---- typed access ----------------------------------------------------------------------- */
@@ -225,11 +230,25 @@ static enum status read_verify(const struct reader *reader, const json_t *docume
   return STATUS_OK;
 }
 
-static enum status read_kind(const struct reader *reader, const json_t *document,
-                             struct job_spec *spec) {
+/* ---- a study ------------------------------------------------------------------------------ */
+
+static enum status read_study(const struct job_reader *job_reader, const struct reader *reader,
+                              const json_t *document, struct job_spec *spec) {
+  spec->kind = JOB_STUDY;
+  reader_copy(spec->name, sizeof spec->name, json_string_value(json_object_get(document, "name")));
+  spec->timeout_s = reader_member(reader, document, "timeout", "s", 0.0);
+  struct study study;
+  enum status status = study_expand(job_reader, document, false, &study, reader->error);
+  study_release(&study);
+  return status;
+}
+
+static enum status read_kind(const struct job_reader *job_reader, const struct reader *reader,
+                             const json_t *document, struct job_spec *spec) {
   const char *kind = json_string_value(json_object_get(document, "kind"));
-  return strcmp(kind, "verify") == 0 ? read_verify(reader, document, spec)
-                                     : read_response(reader, document, spec);
+  return strcmp(kind, "verify") == 0  ? read_verify(reader, document, spec)
+         : strcmp(kind, "study") == 0 ? read_study(job_reader, reader, document, spec)
+                                      : read_response(reader, document, spec);
 }
 
 /* Whether the spec alone does not say everything about the job. */
@@ -239,18 +258,13 @@ static bool keeps_document(const struct job_spec *spec) {
 
 /* ---- the whole document ----------------------------------------------------------------- */
 
-enum status job_reader_read(const struct job_reader *reader, const char *text, size_t size,
-                            struct job_spec *spec, struct error *error) {
-  json_t *document = NULL;
+enum status job_reader_check(const struct job_reader *reader, json_t *document,
+                             struct job_spec *spec, struct error *error) {
   struct error ignored;
   error = error ? error : &ignored;
   struct reader inner = {reader->units, error};
   *spec = (struct job_spec){.kind = JOB_RESPONSE};
-  enum status status = json_text_read(text, size, &document, error);
-  if (status != STATUS_OK) {
-    goto done;
-  }
-  status = embed_refuse(document, error);
+  enum status status = embed_refuse(document, error);
   if (status == STATUS_OK) {
     status = schema_check(reader->schema, document, error);
   }
@@ -258,19 +272,31 @@ enum status job_reader_read(const struct job_reader *reader, const char *text, s
     status = schema_fill(reader->schema, document, error);
   }
   if (status == STATUS_OK) {
-    status = read_kind(&inner, document, spec);
+    status = read_kind(reader, &inner, document, spec);
   }
   if (status == STATUS_OK) {
     status = job_hash(document, spec->hash, error);
   }
-  if (status != STATUS_OK) {
-    json_text_locate(text, size, error->pointer, &error->line, &error->column);
-    goto done;
-  }
-  if (keeps_document(spec)) {
+  if (status == STATUS_OK && keeps_document(spec)) {
     spec->document = json_incref(document);
   }
-done:
+  return status;
+}
+
+enum status job_reader_read(const struct job_reader *reader, const char *text, size_t size,
+                            struct job_spec *spec, struct error *error) {
+  json_t *document = NULL;
+  struct error ignored;
+  error = error ? error : &ignored;
+  *spec = (struct job_spec){.kind = JOB_RESPONSE};
+  enum status status = json_text_read(text, size, &document, error);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  status = job_reader_check(reader, document, spec, error);
+  if (status != STATUS_OK) {
+    json_text_locate(text, size, error->pointer, &error->line, &error->column);
+  }
   json_decref(document);
   return status;
 }

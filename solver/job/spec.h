@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include "solver/base/error.h"
 
-enum job_kind { JOB_RESPONSE, JOB_VERIFY };
+enum job_kind { JOB_RESPONSE, JOB_VERIFY, JOB_STUDY };
 
 /* ---- material --------------------------------------------------------------------------- */
 
@@ -154,7 +154,8 @@ struct verify_spec {
   int refinement; /* number of meshes, each finer than the one before */
 };
 
-/* Only the members of its kind are filled: of a verify job name, verify, timeout and hash. */
+/* Only the members of its kind are filled: of a verify job name, verify, timeout and hash; of a
+ * study name, timeout, hash and document. */
 struct job_spec {
   enum job_kind kind;
   char name[200];
@@ -199,6 +200,11 @@ void job_spec_release(struct job_spec *spec);
 /* job_spec_read with a reader that is kept for the next job. The caller releases *spec. */
 enum status job_reader_read(const struct job_reader *reader, const char *text, size_t size,
                             struct job_spec *spec, struct error *error);
+
+/* job_reader_read of a document that is no text yet: fills in its defaults in place. A study needs
+ * no release of its members: they are checked and dropped (study_expand gives them). */
+enum status job_reader_check(const struct job_reader *reader, json_t *document,
+                             struct job_spec *spec, struct error *error);
 
 /* Reads and checks a job document.
  * text: JSON of `size` bytes. On success fills *spec and returns STATUS_OK; otherwise fills

@@ -68,7 +68,8 @@ static void follow_contact(struct result *r, const struct path_point *point,
   r->open_count += r->open_count < 2;
 }
 
-static json_t *midline(const struct result *r, const double *u, double pressure) {
+/* Points of the bottom centreline in mm; u is NULL for the body at rest. */
+static json_t *centreline(const struct result *r, const double *u) {
   const struct mesh *mesh = r->model->mesh;
   double *x = malloc(sizeof *x * 3 * (size_t)mesh->section_count);
   json_t *points = json_array();
@@ -80,7 +81,11 @@ static json_t *midline(const struct result *r, const double *u, double pressure)
     }
   }
   free(x);
-  return json_pack("{s:f, s:o}", "pressure_kPa", 1e-3 * pressure, "points_mm", points);
+  return points;
+}
+
+static json_t *midline(const struct result *r, const double *u, double pressure) {
+  return json_pack("{s:f, s:o}", "pressure_kPa", 1e-3 * pressure, "points_mm", centreline(r, u));
 }
 
 /* A state where a held load found no equilibrium: one line of the table of the arc. */
@@ -296,6 +301,9 @@ json_t *result_document(struct result *r, enum status status, const struct error
                 "midlines", r->midlines, "fit", fit_object(r), "warnings", result_warnings(r),
                 "artifacts", r->artifacts, "statistics", statistics_object(r, wall_s, cpu_s),
                 "provenance", "version", PNEULAB_VERSION, "spec_hash", r->spec->hash);
+  if (document) {
+    json_object_set_new(document, "rest_midline_mm", centreline(r, NULL));
+  }
   if (document && json_array_size(r->arc) > 0) {
     json_object_set(document, "arc", r->arc);
   }

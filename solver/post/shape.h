@@ -15,7 +15,7 @@ struct shape {
  * the body, so they pass 180 and 360 degrees; tapers of the undeformed body do not count. */
 void shape_measure(const struct mesh *mesh, const double *u, struct shape *shape);
 
-/* Bottom centreline: section_count points (m) into out[3 s + i]. */
+/* Bottom centreline: section_count points (m) into out[3 s + i]; u is NULL for the body at rest. */
 void shape_midline(const struct mesh *mesh, const double *u, double *out);
 
 /* Largest principal stretch of every node (mean over its elements of the value at the nearest

@@ -22,6 +22,9 @@ static bool is_complete(const struct job_spec *spec) {
   if (spec->kind == JOB_VERIFY) {
     return spec->verify.name[0] != '\0' && spec->verify.refinement >= 1;
   }
+  if (spec->kind == JOB_STUDY) {
+    return json_is_object(spec->document) && spec->timeout_s > 0.0;
+  }
   return spec->pneunet.cavity_length > 0.0 && spec->pneunet.length > 0.0 &&
          material_shear_modulus(&spec->material) > 0.0 && spec->load.steps >= 1;
 }
@@ -39,5 +42,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   } else if (!is_complete(&spec)) {
     abort();
   }
+  job_spec_release(&spec);
   return 0;
 }

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Includes only point downwards: base < job < mesh < fe < post, verify < run within the solver; the
+# Includes only point downwards: base < job < mesh < fe < post, verify < run, study within the solver; the
 # server uses of the solver only base and job; the solver never sees the server.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
@@ -10,6 +10,7 @@ rank() {
   solver/mesh/*) echo 3 ;;
   solver/fe/* | solver/hlpv/*) echo 4 ;;
   solver/post/* | solver/verify/*) echo 5 ;;
+  solver/study/*) echo 6 ;;
   solver/run.[ch] | solver/main.c | solver/solve.[ch] | solver/estimate.[ch]) echo 6 ;;
   server/*) echo 7 ;;
   *) echo 0 ;;

@@ -1,0 +1,399 @@
+#include "solver/job/study.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "solver/base/text.h"
+#include "solver/job/json.h"
+#include "solver/job/reader.h"
+
+enum { CHANGES_MAX = 64, NAME_BYTES_MAX = 150 };
+
+/* One value that a member has other than the base. */
+struct change {
+  const char *pointer; /* into the member */
+  json_t *value;
+  struct json_pointer origin; /* into the study */
+};
+
+/* A member in the making. */
+struct draft {
+  struct change change[CHANGES_MAX];
+  int count;
+  int common;             /* the first changes, which every member has */
+  char name[200];         /* "" until it has one */
+  const json_t *labels;   /* of the design, or NULL */
+  struct json_pointer at; /* the design, or what decides in its place */
+};
+
+/* ---- how many ----------------------------------------------------------------------------- */
+
+static bool is_list(const json_t *document) {
+  return strcmp(json_string_value(json_object_get(document, "sampling")), "list") == 0;
+}
+
+static bool is_grid(const json_t *document) {
+  return strcmp(json_string_value(json_object_get(document, "sampling")), "grid") == 0;
+}
+
+static size_t value_count(const json_t *parameter) {
+  return json_array_size(json_object_get(parameter, "values"));
+}
+
+/* Number of members, not more than STUDY_MEMBERS_MAX + 1. */
+static size_t count_members(const json_t *document) {
+  if (is_list(document)) {
+    return json_array_size(json_object_get(document, "designs"));
+  }
+  size_t index, sum = 0, product = 1;
+  json_t *parameter;
+  json_array_foreach(json_object_get(document, "parameters"), index, parameter) {
+    sum += value_count(parameter);
+    product = product > STUDY_MEMBERS_MAX ? product : product * value_count(parameter);
+  }
+  size_t count = is_grid(document) ? product : sum;
+  return count > STUDY_MEMBERS_MAX ? STUDY_MEMBERS_MAX + 1 : count;
+}
+
+static size_t text_size(const json_t *value) {
+  return value ? json_dumpb(value, NULL, 0, JSON_COMPACT) : 0;
+}
+
+static enum status check_size(const json_t *document, struct error *error) {
+  bool list = is_list(document);
+  const char *wanted = list ? "designs" : "parameters", *other = list ? "parameters" : "designs";
+  const char *sampling = json_string_value(json_object_get(document, "sampling"));
+  char pointer[32];
+  if (!json_object_get(document, wanted)) {
+    return error_set(error, STATUS_INVALID, NULL,
+                     "the key \"%s\" is missing: the sampling \"%s\" needs it; for example %s",
+                     wanted, sampling,
+                     list ? "[{\"set\": {\"/actuator/taper/top\": \"1 deg\"}}]"
+                          : "[{\"pointer\": \"/actuator/chamber_gap\", \"values\": [\"1 mm\"]}]");
+  }
+  if (json_object_get(document, other)) {
+    snprintf(pointer, sizeof pointer, "/%s", other);
+    return error_set(error, STATUS_INVALID, pointer,
+                     "the sampling \"%s\" has no use for \"%s\": leave it out, or choose another "
+                     "sampling",
+                     sampling, other);
+  }
+  size_t count = count_members(document);
+  if (count > STUDY_MEMBERS_MAX) {
+    snprintf(pointer, sizeof pointer, "/%s", wanted);
+    return error_set(error, STATUS_TOO_LARGE, pointer,
+                     "the study has more than %d members, the most that is allowed",
+                     STUDY_MEMBERS_MAX);
+  }
+  size_t each = text_size(json_object_get(document, "base")) +
+                text_size(json_object_get(document, "set")) +
+                text_size(json_object_get(document, "parameters"));
+  if (each * count > STUDY_TEXT_MAX) {
+    return error_set(error, STATUS_TOO_LARGE, "/base",
+                     "%zu members of %zu bytes are %zu bytes; at most %d (16 MiB) are allowed: "
+                     "use a shorter base or fewer members",
+                     count, each, each * count, STUDY_TEXT_MAX);
+  }
+  return STATUS_OK;
+}
+
+/* ---- the changes of one member ------------------------------------------------------------ */
+
+static void add_text(char *out, size_t size, const char *text) {
+  size_t used = strlen(out);
+  size_t length = used + 1 < size ? text_prefix(text, size - 1 - used) : 0;
+  memcpy(out + used, text, length);
+  out[used + length] = '\0';
+}
+
+/* "chamber gap 1 mm", after what the name has already. */
+static void add_to_name(struct draft *draft, const char *what, const json_t *value) {
+  char *text = json_is_string(value) ? NULL : json_dumps(value, JSON_ENCODE_ANY | JSON_COMPACT);
+  add_text(draft->name, NAME_BYTES_MAX, draft->name[0] ? ", " : "");
+  add_text(draft->name, NAME_BYTES_MAX, what);
+  add_text(draft->name, NAME_BYTES_MAX, " ");
+  add_text(draft->name, NAME_BYTES_MAX, text ? text : json_string_value(value));
+  free(text);
+}
+
+static const char *last_part(const char *pointer) {
+  const char *slash = strrchr(pointer, '/');
+  return slash ? slash + 1 : pointer;
+}
+
+static struct change *add_change(struct draft *draft, const char *pointer, json_t *value) {
+  struct change *change = &draft->change[draft->count++];
+  *change = (struct change){.pointer = pointer, .value = value};
+  return change;
+}
+
+/* The changes of an object "set" at `at` of the study. */
+static void add_set(struct draft *draft, json_t *set, const struct json_pointer *at) {
+  const char *pointer;
+  json_t *value;
+  json_object_foreach(set, pointer, value) {
+    struct change *change = add_change(draft, pointer, value);
+    change->origin = *at;
+    json_pointer_key(&change->origin, "set");
+    json_pointer_key(&change->origin, pointer);
+  }
+}
+
+static void add_parameter(struct draft *draft, const json_t *document, size_t which, size_t value) {
+  const json_t *parameter = json_array_get(json_object_get(document, "parameters"), which);
+  const char *pointer = json_string_value(json_object_get(parameter, "pointer"));
+  const char *name = json_string_value(json_object_get(parameter, "name"));
+  json_t *given = json_array_get(json_object_get(parameter, "values"), value);
+  struct change *change = add_change(draft, pointer, given);
+  json_pointer_key(&change->origin, "parameters");
+  json_pointer_index(&change->origin, which);
+  draft->at = change->origin;
+  json_pointer_key(&change->origin, "values");
+  json_pointer_index(&change->origin, value);
+  add_to_name(draft, name ? name : last_part(pointer), given);
+}
+
+static void draft_design(struct draft *draft, const json_t *document, size_t index) {
+  json_t *design = json_array_get(json_object_get(document, "designs"), index);
+  const char *name = json_string_value(json_object_get(design, "name"));
+  json_pointer_key(&draft->at, "designs");
+  json_pointer_index(&draft->at, index);
+  add_set(draft, json_object_get(design, "set"), &draft->at);
+  draft->labels = json_object_get(design, "labels");
+  if (name) {
+    add_text(draft->name, NAME_BYTES_MAX, name);
+  }
+  for (int c = draft->common; c < draft->count && !name; c++) {
+    add_to_name(draft, last_part(draft->change[c].pointer), draft->change[c].value);
+  }
+  if (!draft->name[0]) {
+    snprintf(draft->name, sizeof draft->name, "design %zu", index + 1);
+  }
+}
+
+static void draft_member(struct draft *draft, const json_t *document, size_t index) {
+  *draft = (struct draft){.count = 0};
+  add_set(draft, json_object_get(document, "set"), &draft->at);
+  draft->common = draft->count;
+  if (is_list(document)) {
+    draft_design(draft, document, index);
+    return;
+  }
+  const json_t *parameters = json_object_get(document, "parameters");
+  size_t count = json_array_size(parameters), rest = index;
+  if (!is_grid(document)) {
+    size_t which = 0;
+    for (; rest >= value_count(json_array_get(parameters, which)); which++) {
+      rest -= value_count(json_array_get(parameters, which));
+    }
+    add_parameter(draft, document, which, rest);
+    return;
+  }
+  size_t period = count_members(document);
+  for (size_t which = 0; which < count; which++) {
+    period /= value_count(json_array_get(parameters, which));
+    add_parameter(draft, document, which, rest / period);
+    rest %= period;
+  }
+}
+
+/* ---- from changes to a checked member ----------------------------------------------------- */
+
+/* Whether a change at `pointer` touches what `place` names: one leads to the other. */
+static bool concerns(const char *pointer, const char *place) {
+  size_t a = strlen(pointer), b = strlen(place), shorter = a < b ? a : b;
+  return strncmp(pointer, place, shorter) == 0 &&
+         (a == b || (a < b ? place[a] : pointer[b]) == '/');
+}
+
+/* Lets an error of the member name the value of the study that has to change. */
+static enum status refer(const struct draft *draft, struct error *error) {
+  struct error inner = *error;
+  const struct json_pointer *origin = &draft->at;
+  size_t longest = 0;
+  for (int c = 0; c < draft->count && inner.pointer[0]; c++) {
+    size_t length = strlen(draft->change[c].pointer);
+    if (concerns(draft->change[c].pointer, inner.pointer) && length >= longest) {
+      origin = &draft->change[c].origin;
+      longest = length;
+    }
+  }
+  return error_set(error, inner.status, origin->text, "member \"%.80s\"%s%s: %s", draft->name,
+                   inner.pointer[0] ? ", " : "", inner.pointer, inner.message);
+}
+
+static enum status no_memory(struct error *error) {
+  return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the members of the study");
+}
+
+/* The document of a member, a new reference, or NULL with the error filled. */
+static json_t *build(const json_t *document, const struct draft *draft, struct error *error) {
+  json_t *built = json_deep_copy(json_object_get(document, "base"));
+  if (!built) {
+    no_memory(error);
+    return NULL;
+  }
+  enum status status = STATUS_OK;
+  for (int c = 0; c < draft->count && status == STATUS_OK; c++) {
+    status = study_set(built, draft->change[c].pointer, draft->change[c].value, error);
+    if (status != STATUS_OK) {
+      struct error inner = *error;
+      error_set(error, status, draft->change[c].origin.text, "%s", inner.message);
+    }
+  }
+  if (status == STATUS_OK) {
+    json_object_del(built, "comment");
+    if (json_object_set_new(built, "name", json_string(draft->name)) != 0 ||
+        (draft->labels &&
+         json_object_set_new(built, "labels", json_deep_copy(draft->labels)) != 0)) {
+      status = no_memory(error);
+    }
+  }
+  if (status != STATUS_OK) {
+    json_decref(built);
+    return NULL;
+  }
+  return built;
+}
+
+static enum status check_stations(const struct study_ranking *ranking, const struct draft *draft,
+                                  const struct job_spec *spec, struct error *error) {
+  for (int s = 0; s < ranking->station_count; s++) {
+    if (ranking->station[s] > spec->pneunet.length * (1 + 1e-9)) {
+      char pointer[48];
+      snprintf(pointer, sizeof pointer, "/ranking/stations/%d", s);
+      return error_set(error, STATUS_INVALID, pointer,
+                       "the station at %.6g mm lies beyond the end of the member \"%.80s\", which "
+                       "is %.6g mm long",
+                       1e3 * ranking->station[s], draft->name, 1e3 * spec->pneunet.length);
+    }
+  }
+  return STATUS_OK;
+}
+
+/* Checks the member as a job of its own and takes from it what the study has to know. */
+static enum status take_member(const struct job_reader *reader, const struct draft *draft,
+                               const struct study_ranking *ranking, json_t *built,
+                               struct study_member *member, struct error *error) {
+  struct job_spec spec;
+  enum status status = job_reader_check(reader, built, &spec, error);
+  if (status != STATUS_OK) {
+    return refer(draft, error);
+  }
+  memcpy(member->hash, spec.hash, sizeof member->hash);
+  member->timeout_s = spec.timeout_s;
+  status = check_stations(ranking, draft, &spec, error);
+  job_spec_release(&spec);
+  json_t *mirrored = status == STATUS_OK ? job_mirror(built) : NULL;
+  if (mirrored) {
+    status = job_hash(mirrored, member->mirrored_hash, error);
+  }
+  json_decref(mirrored);
+  return status;
+}
+
+static enum status make_member(const struct job_reader *reader, const json_t *document,
+                               const struct study *study, bool keep, size_t index,
+                               struct study_member *member, struct error *error) {
+  struct draft draft;
+  draft_member(&draft, document, index);
+  json_t *built = build(document, &draft, error);
+  if (!built) {
+    return error->status;
+  }
+  enum status status = take_member(reader, &draft, &study->ranking, built, member, error);
+  memcpy(member->name, draft.name, sizeof member->name);
+  member->labels = draft.labels ? json_deep_copy(draft.labels) : json_object();
+  member->values = json_object();
+  for (int c = draft.common; c < draft.count; c++) {
+    json_object_set(member->values, draft.change[c].pointer, draft.change[c].value);
+  }
+  if (keep) {
+    member->document = json_incref(built);
+  }
+  json_decref(built);
+  return status == STATUS_OK && (!member->labels || !member->values) ? no_memory(error) : status;
+}
+
+/* Finds repetitions and mirror images among the members before this one. */
+static void relate(struct study *study, size_t index) {
+  struct study_member *member = &study->member[index];
+  member->same_as = member->mirror_of = -1;
+  for (size_t i = 0; i < index && member->same_as < 0; i++) {
+    const struct study_member *before = &study->member[i];
+    if (strcmp(before->hash, member->hash) == 0) {
+      member->same_as = (int)i;
+      member->mirror_of = -1;
+    } else if (member->mirror_of < 0 && strcmp(before->hash, member->mirrored_hash) == 0) {
+      member->mirror_of = (int)i;
+    }
+  }
+  study->distinct += member->same_as < 0 && member->mirror_of < 0;
+}
+
+/* ---- the ranking -------------------------------------------------------------------------- */
+
+static enum status read_ranking(const struct reader *reader, const json_t *value,
+                                struct study_ranking *ranking) {
+  const json_t *weights = json_object_get(value, "weights"), *station;
+  size_t index;
+  *ranking = (struct study_ranking){.asked = value != NULL};
+  if (!value) {
+    return STATUS_OK;
+  }
+  json_array_foreach(json_object_get(value, "stations"), index, station) {
+    ranking->station[ranking->station_count++] = reader_quantity(reader, station, "mm");
+  }
+  ranking->bending = json_number_value(json_object_get(weights, "bending"));
+  ranking->slope = json_number_value(json_object_get(weights, "slope"));
+  ranking->deflection = json_number_value(json_object_get(weights, "deflection"));
+  ranking->mean_weight = json_number_value(json_object_get(value, "mean_weight"));
+  const char *normalisation = json_string_value(json_object_get(value, "normalisation"));
+  ranking->by_station = strcmp(normalisation, "station") == 0;
+  double sum = ranking->bending + ranking->slope + ranking->deflection;
+  if (fabs(sum - 1) > 1e-9) {
+    return error_set(reader->error, STATUS_INVALID, "/ranking/weights",
+                     "the weights add up to %.6g, not to 1; for example {\"bending\": 0.4, "
+                     "\"slope\": 0.3, \"deflection\": 0.3}",
+                     sum);
+  }
+  return STATUS_OK;
+}
+
+/* ---- all of it ---------------------------------------------------------------------------- */
+
+enum status study_expand(const struct job_reader *job_reader, const json_t *document, bool keep,
+                         struct study *study, struct error *error) {
+  *study = (struct study){.count = 0};
+  struct reader reader = {job_reader_units(job_reader), error};
+  enum status status = check_size(document, error);
+  if (status == STATUS_OK) {
+    status = read_ranking(&reader, json_object_get(document, "ranking"), &study->ranking);
+  }
+  if (status != STATUS_OK) {
+    return status;
+  }
+  size_t count = count_members(document);
+  study->member = calloc(count, sizeof *study->member);
+  if (!study->member) {
+    return no_memory(error);
+  }
+  for (size_t i = 0; i < count && status == STATUS_OK; i++) {
+    study->count = i + 1;
+    status = make_member(job_reader, document, study, keep, i, &study->member[i], error);
+    relate(study, i);
+  }
+  return status;
+}
+
+void study_release(struct study *study) {
+  for (size_t i = 0; i < study->count; i++) {
+    json_decref(study->member[i].document);
+    json_decref(study->member[i].values);
+    json_decref(study->member[i].labels);
+  }
+  free(study->member);
+  *study = (struct study){.count = 0};
+}

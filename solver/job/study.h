@@ -1,0 +1,62 @@
+/* The members of a study: the jobs that its base and its sampling come to. */
+#ifndef PNEULAB_JOB_STUDY_H
+#define PNEULAB_JOB_STUDY_H
+
+#include <jansson.h>
+#include "solver/job/spec.h"
+
+enum { STUDY_MEMBERS_MAX = 1000, STATIONS_MAX = 50 };
+
+/* Most text that the members of a study may have together, in bytes. */
+enum { STUDY_TEXT_MAX = 16 << 20 };
+
+/* One member. Members with equal hashes are the same body under the same load; so are, but for the
+ * sign of what lies across the body, those of which one has the other's mirrored hash. */
+struct study_member {
+  json_t *document; /* the job, defaults filled in; NULL unless documents are kept */
+  json_t *values;   /* object: pointer -> value as the study gives it */
+  json_t *labels;   /* of the design, or an empty object */
+  char name[200];
+  char hash[65];
+  char mirrored_hash[65]; /* of the job mirrored about y = 0; "" when it has no mirror image */
+  double timeout_s;       /* of the member's own job */
+  int same_as;            /* first member with the same hash, or -1 */
+  int mirror_of;          /* first member that is its mirror image, -1 for none or with same_as */
+};
+
+/* How members are ranked. */
+struct study_ranking {
+  bool asked;
+  int station_count;
+  double station[STATIONS_MAX];      /* m, arc length of the undeformed bottom centreline */
+  double bending, slope, deflection; /* weights, of sum 1 */
+  double mean_weight;
+  bool by_station; /* extremes are those of the station, not of all stations */
+};
+
+struct study {
+  struct study_member *member;
+  size_t count;
+  size_t distinct; /* members but for repetitions and mirror images */
+  struct study_ranking ranking;
+};
+
+/* Expands a study whose document has passed the schema and has its defaults filled in, and checks
+ * every member as the job that it is; `keep` keeps their documents. *study is owned by the caller,
+ * who calls study_release in either case. STATUS_OK; STATUS_INVALID or STATUS_GEOMETRY with the
+ * pointer to the value of the study that has to change; STATUS_TOO_LARGE; STATUS_NO_MEMORY. */
+enum status study_expand(const struct job_reader *reader, const json_t *document, bool keep,
+                         struct study *study, struct error *error);
+void study_release(struct study *study);
+
+/* Writes `value` (NULL or null: takes the key away) into `document` at `pointer` (RFC 6901).
+ * Objects on the way are made when they are missing. STATUS_INVALID, with the pointer of `error`
+ * left empty, for a pointer that is malformed or leads nowhere; STATUS_NO_MEMORY. */
+enum status study_set(json_t *document, const char *pointer, json_t *value, struct error *error);
+
+/* The mirror image of a response job about y = 0, a new reference: lateral tapers and the pressures
+ * of left and right row change sides, components across the body their sign. NULL when there is
+ * none, because the job asks for derivatives, or memory runs out. */
+json_t *job_mirror(const json_t *document);
+
+#endif

@@ -1,0 +1,245 @@
+/* From the text of a study to its members. */
+#include <string.h>
+
+#include "solver/job/study.h"
+#include "tests/unit/suite.h"
+
+#define BASE                                                                                       \
+  "{\"kind\":\"response\",\"actuator\":{\"family\":\"pneunet\",\"length\":\"24 mm\","              \
+  "\"width\":\"20 mm\",\"height\":\"14 mm\",\"chambers\":[{\"config\":\"B\",\"count\":2}],"        \
+  "\"side_wall\":\"2 mm\",\"top_wall\":\"2 mm\",\"bottom_layer\":\"4 mm\"},"                       \
+  "\"material\":\"dragon-skin-20\",\"load\":{\"pressure\":{\"to\":\"10 kPa\",\"steps\":2}},"       \
+  "\"timeout\":\"2 min\"}"
+#define STUDY(rest) "{\"kind\":\"study\",\"name\":\"s\",\"base\":" BASE "," rest "}"
+#define GAP                                                                                        \
+  "{\"pointer\":\"/actuator/chamber_gap\",\"name\":\"gap\",\"values\":[\"1 mm\",\"2 mm\"]}"
+#define SIDES                                                                                      \
+  "{\"pointer\":\"/actuator/taper/left\",\"values\":[\"0 deg\",\"2 deg\"]},"                       \
+  "{\"pointer\":\"/actuator/taper/right\",\"values\":[\"0 deg\",\"2 deg\"]}"
+
+static struct job_reader *reader;
+
+static void set_up(void) {
+  ck_assert_int_eq(job_reader_create(&reader, NULL), STATUS_OK);
+}
+
+static void tear_down(void) {
+  job_reader_destroy(reader);
+}
+
+/* The members of a study that is valid; the caller releases both. */
+static void expand(const char *text, struct job_spec *spec, struct study *study) {
+  struct error error = {.status = STATUS_OK};
+  enum status status = job_reader_read(reader, text, strlen(text), spec, &error);
+  ck_assert_msg(status == STATUS_OK, "%s: %s", error.pointer, error.message);
+  ck_assert_int_eq(spec->kind, JOB_STUDY);
+  ck_assert_int_eq(study_expand(reader, spec->document, true, study, &error), STATUS_OK);
+}
+
+static const char *gap_of(const struct study_member *member) {
+  return json_string_value(
+      json_object_get(json_object_get(member->document, "actuator"), "chamber_gap"));
+}
+
+START_TEST(a_grid_has_every_combination) {
+  struct job_spec spec;
+  struct study study;
+  expand(STUDY("\"sampling\":\"grid\",\"parameters\":[" GAP "," SIDES "]"), &spec, &study);
+  ck_assert_uint_eq(study.count, 8);
+  ck_assert_str_eq(study.member[0].name, "gap 1 mm, left 0 deg, right 0 deg");
+  ck_assert_str_eq(study.member[6].name, "gap 2 mm, left 2 deg, right 0 deg");
+  ck_assert_str_eq(gap_of(&study.member[3]), "1 mm");
+  ck_assert_str_eq(gap_of(&study.member[4]), "2 mm");
+  ck_assert_str_eq(
+      json_string_value(json_object_get(study.member[6].values, "/actuator/taper/left")), "2 deg");
+  ck_assert_double_eq_tol(study.member[0].timeout_s, 120, 1e-9);
+  ck_assert_double_eq_tol(spec.timeout_s, 7200, 1e-9);
+  study_release(&study);
+  job_spec_release(&spec);
+}
+END_TEST
+
+START_TEST(mirror_images_are_found) {
+  struct job_spec spec;
+  struct study study;
+  expand(STUDY("\"sampling\":\"grid\",\"parameters\":[" SIDES "]"), &spec, &study);
+  ck_assert_uint_eq(study.distinct, 3);
+  ck_assert_int_eq(study.member[1].mirror_of, -1);
+  ck_assert_int_eq(study.member[2].mirror_of, 1);
+  ck_assert_int_eq(study.member[3].mirror_of, -1);
+  ck_assert_str_eq(study.member[0].hash, study.member[0].mirrored_hash);
+  study_release(&study);
+  job_spec_release(&spec);
+}
+END_TEST
+
+START_TEST(gravity_and_planes_have_mirror_images) {
+  struct job_spec spec;
+  struct study study;
+  expand(STUDY("\"sampling\":\"list\",\"designs\":["
+               "{\"set\":{\"/load/gravity/1\":\"9.8 m/s2\"}},"
+               "{\"set\":{\"/load/gravity/1\":\"-9.8 m/s2\"}},"
+               "{\"set\":{\"/planes\":[{\"point\":[0,\"30 mm\",0],\"normal\":[0,-1,0]}]}},"
+               "{\"set\":{\"/planes\":[{\"point\":[0,\"-30 mm\",0],\"normal\":[0,1,0]}]}}]"),
+         &spec, &study);
+  ck_assert_uint_eq(study.distinct, 2);
+  ck_assert_int_eq(study.member[1].mirror_of, 0);
+  ck_assert_int_eq(study.member[3].mirror_of, 2);
+  study_release(&study);
+  job_spec_release(&spec);
+}
+END_TEST
+
+START_TEST(derivatives_have_no_mirror_image) {
+  struct job_spec spec;
+  struct study study;
+  expand(STUDY("\"set\":{\"/sensitivity\":true},\"sampling\":\"grid\",\"parameters\":[" SIDES "]"),
+         &spec, &study);
+  ck_assert_uint_eq(study.distinct, 4);
+  study_release(&study);
+  job_spec_release(&spec);
+}
+END_TEST
+
+START_TEST(one_at_a_time_keeps_the_rest) {
+  struct job_spec spec;
+  struct study study;
+  expand(
+      STUDY("\"set\":{\"/accuracy\":\"fast\"},\"sampling\":\"one-at-a-time\",\"parameters\":[" GAP
+            ",{\"pointer\":\"/mesh/gap_wall\",\"values\":[1,2,3]}]"),
+      &spec, &study);
+  ck_assert_uint_eq(study.count, 5);
+  ck_assert_uint_eq(study.distinct, 5);
+  ck_assert_str_eq(study.member[3].name, "gap_wall 2");
+  ck_assert_str_eq(gap_of(&study.member[3]), "2 mm");
+  ck_assert_str_eq(json_string_value(json_object_get(study.member[3].document, "accuracy")),
+                   "fast");
+  ck_assert_uint_eq(json_object_size(study.member[3].values), 1);
+  study_release(&study);
+  job_spec_release(&spec);
+}
+END_TEST
+
+START_TEST(designs_are_listed) {
+  struct job_spec spec;
+  struct study study;
+  expand(STUDY("\"sampling\":\"list\",\"designs\":[{\"name\":\"as it is\",\"set\":{}},"
+               "{\"labels\":{\"set\":\"1\"},\"set\":{\"/actuator/length\":null,"
+               "\"/actuator/chamber_length\":\"11 mm\"}},{\"set\":{}}]"),
+         &spec, &study);
+  ck_assert_uint_eq(study.distinct, 2);
+  ck_assert_str_eq(study.member[0].name, "as it is");
+  ck_assert_str_eq(json_string_value(json_object_get(study.member[0].document, "name")),
+                   "as it is");
+  ck_assert_str_eq(study.member[1].name, "length null, chamber_length 11 mm");
+  ck_assert_str_eq(json_string_value(json_object_get(study.member[1].labels, "set")), "1");
+  ck_assert_str_eq(study.member[2].name, "design 3");
+  ck_assert_int_eq(study.member[2].same_as, 0);
+  study_release(&study);
+  job_spec_release(&spec);
+}
+END_TEST
+
+START_TEST(members_hash_like_the_jobs_they_are) {
+  struct job_spec spec, alone;
+  struct study study;
+  expand(STUDY("\"sampling\":\"list\",\"designs\":[{\"set\":{}}]"), &spec, &study);
+  ck_assert_int_eq(job_reader_read(reader, BASE, strlen(BASE), &alone, NULL), STATUS_OK);
+  ck_assert_str_eq(study.member[0].hash, alone.hash);
+  study_release(&study);
+  job_spec_release(&spec);
+}
+END_TEST
+
+START_TEST(rankings_are_read) {
+  struct job_spec spec;
+  struct study study;
+  expand(STUDY("\"sampling\":\"list\",\"designs\":[{\"set\":{}}],\"ranking\":{\"stations\":"
+               "[\"8 mm\",\"2.4 cm\"],\"weights\":{\"bending\":1,\"slope\":0,\"deflection\":0}}"),
+         &spec, &study);
+  ck_assert(study.ranking.asked && !study.ranking.by_station);
+  ck_assert_int_eq(study.ranking.station_count, 2);
+  ck_assert_double_eq_tol(study.ranking.station[1], 0.024, 1e-12);
+  ck_assert_double_eq_tol(study.ranking.bending, 1, 1e-15);
+  ck_assert_double_eq_tol(study.ranking.mean_weight, 0.5, 1e-15);
+  study_release(&study);
+  job_spec_release(&spec);
+}
+END_TEST
+
+#define LIST(set)                                                                                  \
+  STUDY("\"sampling\":\"list\",\"designs\":[{\"set\":{}},{\"name\":\"B\",\"set\":" set "}]")
+#define MANY(p) "{\"pointer\":\"/mesh/" p "\",\"values\":[1,2,3,4,5,6,7,8,9,10,11]}"
+
+static const struct {
+  const char *text;
+  enum status status;
+  const char *pointer, *message;
+} bad[] = {
+    {"{\"kind\":\"study\",\"sampling\":\"list\"}", STATUS_INVALID, "", "\"base\" is missing"},
+    {STUDY("\"sampling\":\"sobel\""), STATUS_INVALID, "/sampling", "one-at-a-time"},
+    {STUDY("\"sampling\":\"list\""), STATUS_INVALID, "", "\"designs\" is missing"},
+    {STUDY("\"sampling\":\"grid\""), STATUS_INVALID, "", "\"parameters\" is missing"},
+    {STUDY("\"sampling\":\"grid\",\"parameters\":[" GAP "],\"designs\":[{\"set\":{}}]"),
+     STATUS_INVALID, "/designs", "no use"},
+    {STUDY("\"sampling\":\"grid\",\"parameters\":[" MANY("top") "," MANY("gap") "," MANY(
+         "side_wall") "]"),
+     STATUS_TOO_LARGE, "/parameters", "1000"},
+    {LIST("{\"/actuator/taper/top\":2}"), STATUS_INVALID, "/designs/1/set/~1actuator~1taper~1top",
+     "write \"2 deg\""},
+    {LIST("{\"/actuator/hight\":\"2 mm\"}"), STATUS_INVALID, "/designs/1/set/~1actuator~1hight",
+     "did you mean \"height\""},
+    {LIST("{\"/actuator/length\":\"9 mm\"}"), STATUS_GEOMETRY, "/designs/1/set/~1actuator~1length",
+     "member \"B\", /actuator/length: walls and gaps"},
+    {LIST("{\"/actuator/chamber_gap\":\"40 mm\"}"), STATUS_GEOMETRY, "/designs/1",
+     "member \"B\", /actuator/length: walls and gaps"},
+    {LIST("{\"actuator\":1}"), STATUS_INVALID, "/designs/1/set/actuator", "no JSON pointer"},
+    {LIST("{\"/actuator~2\":1}"), STATUS_INVALID, "/designs/1/set/~1actuator~02", "~"},
+    {LIST("{\"/actuator/length/x\":1}"), STATUS_INVALID, "/designs/1/set/~1actuator~1length~1x",
+     "leads nowhere"},
+    {LIST("{\"/actuator/chambers/1/count\":1}"), STATUS_INVALID,
+     "/designs/1/set/~1actuator~1chambers~11~1count", "leads nowhere"},
+    {LIST("{\"/load/gravity/3\":0}"), STATUS_INVALID, "/designs/1/set/~1load~1gravity~13",
+     "the array has 3"},
+    {LIST("{\"/kind\":\"study\"}"), STATUS_INVALID, "/designs/1/set/~1kind", "response"},
+    {LIST("{\"/material\":null}"), STATUS_INVALID, "/designs/1", "\"material\" is missing"},
+    {STUDY("\"set\":{\"/contact\":1},\"sampling\":\"list\",\"designs\":[{\"set\":{}}]"),
+     STATUS_INVALID, "/set/~1contact", "true or false"},
+    {STUDY("\"sampling\":\"one-at-a-time\",\"parameters\":[" GAP
+           ",{\"pointer\":\"/actuator/length\",\"values\":[\"30 mm\",30]}]"),
+     STATUS_INVALID, "/parameters/1/values/1", "30 mm"},
+    {STUDY("\"sampling\":\"list\",\"designs\":[{\"set\":{}}],\"ranking\":{\"stations\":[\"8 mm\"],"
+           "\"weights\":{\"bending\":0.5}}"),
+     STATUS_INVALID, "/ranking/weights", "1.1"},
+    {STUDY("\"sampling\":\"list\",\"designs\":[{\"set\":{}}],\"ranking\":{\"stations\":[\"8 mm\","
+           "\"30 mm\"]}"),
+     STATUS_INVALID, "/ranking/stations/1", "24 mm long"},
+};
+
+START_TEST(bad_studies_are_refused) {
+  struct job_spec spec;
+  struct error error = {.status = STATUS_OK};
+  const char *text = bad[_i].text;
+  ck_assert_int_eq(job_reader_read(reader, text, strlen(text), &spec, &error), bad[_i].status);
+  ck_assert_str_eq(error.pointer, bad[_i].pointer);
+  ck_assert_msg(strstr(error.message, bad[_i].message) != NULL, "%s", error.message);
+  ck_assert_int_ge(error.line, 1);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("job: studies");
+  TCase *tcase = tcase_create("all");
+  tcase_add_checked_fixture(tcase, set_up, tear_down);
+  tcase_add_test(tcase, a_grid_has_every_combination);
+  tcase_add_test(tcase, mirror_images_are_found);
+  tcase_add_test(tcase, gravity_and_planes_have_mirror_images);
+  tcase_add_test(tcase, derivatives_have_no_mirror_image);
+  tcase_add_test(tcase, one_at_a_time_keeps_the_rest);
+  tcase_add_test(tcase, designs_are_listed);
+  tcase_add_test(tcase, members_hash_like_the_jobs_they_are);
+  tcase_add_test(tcase, rankings_are_read);
+  tcase_add_loop_test(tcase, bad_studies_are_refused, 0, sizeof bad / sizeof *bad);
+  suite_add_tcase(suite, tcase);
+  return suite_run(suite);
+}
