@@ -43,6 +43,12 @@ static bool has_effect(const struct job_spec *spec, const char *group, const cha
   if (strcmp(key, "chamber_gap") == 0) {
     return p->chamber_gap > 0;
   }
+  if (strcmp(key, "gap_root") == 0) {
+    return p->chamber_gap > 0 && p->gap_shape != GAP_RECTANGULAR;
+  }
+  if (strcmp(key, "gap_round") == 0) {
+    return p->chamber_gap > 0 && p->gap_shape == GAP_U;
+  }
   if (!group && strcmp(key, "length") == 0) {
     return isnan(spec->given.chamber_length);
   }

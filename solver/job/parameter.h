@@ -4,7 +4,7 @@
 
 #include "solver/job/spec.h"
 
-enum { PNEUNET_DIMENSIONS = 21 };
+enum { PNEUNET_DIMENSIONS = 23 };
 
 /* Where a dimension stands in the actuator and in struct pneunet_given. */
 struct pneunet_dimension {

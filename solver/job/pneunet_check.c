@@ -122,6 +122,24 @@ static enum status check_height(const struct pneunet_spec *s, struct error *erro
   return STATUS_OK;
 }
 
+/* The form of the gaps below their tops. */
+static enum status check_gaps(const struct pneunet_spec *s, struct error *error) {
+  double height = fmin(s->height_base, s->height_tip) - s->bottom_layer;
+  if (s->gap_root > s->chamber_gap) {
+    return error_set(error, STATUS_GEOMETRY, "/actuator/gap_root",
+                     "the gaps would be %.6g mm wide at the root but only %.6g mm at the top "
+                     "(chamber_gap), which is the most that the root can have",
+                     to_mm(s->gap_root), to_mm(s->chamber_gap));
+  }
+  if (s->gap_round > height) {
+    return error_set(error, STATUS_GEOMETRY, "/actuator/gap_round",
+                     "the rounded bottom of a U of %.6g mm is higher than the gaps, which are "
+                     "%.6g mm high",
+                     to_mm(s->gap_round), to_mm(height));
+  }
+  return STATUS_OK;
+}
+
 static enum status check_vertical_taper(const struct pneunet_spec *s, struct error *error) {
   double room = (fmin(s->height_base, s->height_tip) - vertical_need(s)) / s->length;
   double top = tan(s->taper_top), bottom = tan(s->taper_bottom);
@@ -145,6 +163,9 @@ enum status pneunet_check(const struct pneunet_spec *s, struct error *error) {
   }
   if (status == STATUS_OK) {
     status = check_height(s, error);
+  }
+  if (status == STATUS_OK) {
+    status = check_gaps(s, error);
   }
   if (status == STATUS_OK) {
     status = check_lateral_taper(s, s->taper_left, "/actuator/taper/left", error);

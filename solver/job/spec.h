@@ -41,6 +41,16 @@ enum chamber_config {
   CHAMBER_C  /* detached from the bottom layer but for a stem around the channel */
 };
 
+/* How the width of a gap changes from gap_root at its root (z = 0) to chamber_gap g at its top
+ * (z = h) in the base section. The cavities are rectangular whatever the gap: what it loses, the
+ * walls gain.
+ *   rectangular:     g
+ *   U:               gap_root + (g - gap_root) sqrt(1 - (1 - z/d)^2) below d = gap_round, then g:
+ *                    a flat floor between two quarters of ellipses, of circles for d = (g -
+ *                    gap_root) / 2
+ *   V, trapezoidal:  gap_root + (g - gap_root) z/h; they differ in the default of gap_root */
+enum gap_shape { GAP_RECTANGULAR, GAP_U, GAP_V, GAP_TRAPEZOIDAL };
+
 struct chamber_run {
   enum chamber_config config;
   int count;
@@ -51,7 +61,7 @@ enum { CHAMBER_RUNS_MAX = 32, CHAMBERS_MAX = 64 };
 /* The dimensions as the job gives them, in m and rad; NAN where it is silent. */
 struct pneunet_given {
   double length, chamber_length, width, height, height_base, height_tip;
-  double chamber_gap, side_wall, gap_wall, top_wall, bottom_layer;
+  double chamber_gap, gap_root, gap_round, side_wall, gap_wall, top_wall, bottom_layer;
   double slit, slit_floor, stem;
   double channel_width, channel_height, channel_cover;
   double taper_top, taper_bottom, taper_left, taper_right;
@@ -67,7 +77,10 @@ struct pneunet_spec {
   struct chamber_run runs[CHAMBER_RUNS_MAX];
   int run_count;
   int chamber_count;
-  double chamber_gap;
+  double chamber_gap; /* width of the gaps at the top */
+  enum gap_shape gap_shape;
+  double gap_root;  /* width of the gaps at the root; chamber_gap when rectangular */
+  double gap_round; /* height of the rounded bottom of a U */
   double side_wall; /* thickness of the walls at y = +-width/2 */
   double gap_wall;  /* axial walls, facing gaps and at both ends */
   double top_wall;

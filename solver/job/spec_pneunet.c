@@ -101,6 +101,34 @@ static enum status derive_heights(const struct pneunet_given *given, struct pneu
   return STATUS_OK;
 }
 
+static enum gap_shape read_gap_shape(const char *word) {
+  return word[0] == 'U'   ? GAP_U
+         : word[0] == 'V' ? GAP_V
+         : word[0] == 't' ? GAP_TRAPEZOIDAL
+                          : GAP_RECTANGULAR;
+}
+
+/* The gaps: their width at the top, their shape below it. */
+static enum status derive_gaps(const struct pneunet_given *given, struct pneunet_spec *spec,
+                               struct error *error) {
+  static const double root_share[] = {
+      [GAP_RECTANGULAR] = 1, [GAP_U] = 0.1, [GAP_V] = 0.1, [GAP_TRAPEZOIDAL] = 0.5};
+  bool shaped = spec->gap_shape != GAP_RECTANGULAR;
+  int gaps = count_gaps(spec);
+  spec->chamber_gap = gaps > 0 ? given->chamber_gap : 0.0;
+  if (gaps > 0 && !(spec->chamber_gap >= 1e-6)) {
+    return error_set(error, STATUS_GEOMETRY, "/actuator/chamber_gap",
+                     "chambers of configuration B and C need a gap of at least 0.001 mm: write for "
+                     "example \"2 mm\", or use configuration A");
+  }
+  double root = root_share[spec->gap_shape] * spec->chamber_gap;
+  spec->gap_root = shaped && gaps > 0 ? otherwise(given->gap_root, root) : root;
+  double round = fmin(0.5 * (spec->chamber_gap - spec->gap_root),
+                      fmin(spec->height_base, spec->height_tip) - spec->bottom_layer);
+  spec->gap_round = spec->gap_shape == GAP_U ? otherwise(given->gap_round, round) : 0.0;
+  return STATUS_OK;
+}
+
 enum status pneunet_derive(const struct pneunet_given *given, struct pneunet_spec *spec,
                            struct error *error) {
   spec->width = given->width;
@@ -121,14 +149,10 @@ enum status pneunet_derive(const struct pneunet_given *given, struct pneunet_spe
   spec->taper_bottom = otherwise(given->taper_bottom, 0.0);
   spec->taper_left = otherwise(given->taper_left, 0.0);
   spec->taper_right = otherwise(given->taper_right, 0.0);
-  int gaps = count_gaps(spec);
-  spec->chamber_gap = gaps > 0 ? given->chamber_gap : 0.0;
-  if (gaps > 0 && !(spec->chamber_gap >= 1e-6)) {
-    return error_set(error, STATUS_GEOMETRY, "/actuator/chamber_gap",
-                     "chambers of configuration B and C need a gap of at least 0.001 mm: write for "
-                     "example \"2 mm\", or use configuration A");
-  }
   enum status status = derive_heights(given, spec, error);
+  if (status == STATUS_OK) {
+    status = derive_gaps(given, spec, error);
+  }
   if (status == STATUS_OK) {
     status = derive_length(given, spec, error);
   }
@@ -145,6 +169,8 @@ const struct pneunet_dimension pneunet_dimensions[PNEUNET_DIMENSIONS] = {
     DIMENSION("height", "base", "mm", height_base),
     DIMENSION("height", "tip", "mm", height_tip),
     DIMENSION(NULL, "chamber_gap", "mm", chamber_gap),
+    DIMENSION(NULL, "gap_root", "mm", gap_root),
+    DIMENSION(NULL, "gap_round", "mm", gap_round),
     DIMENSION(NULL, "side_wall", "mm", side_wall),
     DIMENSION(NULL, "gap_wall", "mm", gap_wall),
     DIMENSION(NULL, "top_wall", "mm", top_wall),
@@ -164,7 +190,9 @@ const struct pneunet_dimension pneunet_dimensions[PNEUNET_DIMENSIONS] = {
 enum status reader_pneunet(const struct reader *reader, const json_t *actuator,
                            struct pneunet_given *given, struct pneunet_spec *spec) {
   const char *walls = json_string_value(json_object_get(actuator, "tapered_walls"));
-  *spec = (struct pneunet_spec){.scaled_walls = strcmp(walls, "scaled") == 0};
+  const char *shape = json_string_value(json_object_get(actuator, "gap_shape"));
+  *spec = (struct pneunet_spec){.scaled_walls = strcmp(walls, "scaled") == 0,
+                                .gap_shape = read_gap_shape(shape)};
   for (int d = 0; d < PNEUNET_DIMENSIONS; d++) {
     const struct pneunet_dimension *dimension = &pneunet_dimensions[d];
     const json_t *object =

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include "solver/mesh/pneunet_map.h"
 #include "solver/mesh/stretch.h"
 
 /* Features along the body, carrying the chamber's configuration. */
@@ -35,7 +36,7 @@ static bool tag_is_void_axial(int tag) {
 }
 
 static int pneunet_cell(const void *context, const int tag[3]) {
-  const struct pneunet_spec *p = context;
+  const struct pneunet_spec *p = ((const struct pneunet_map *)context)->p;
   int axial = tag[0], lateral = tag[1], vertical = tag[2];
   bool over_channel = p->has_channel && lateral == LATERAL_CHANNEL;
   bool detached = axial == AXIAL_CAVITY_C || axial == AXIAL_WALL_C || axial == AXIAL_END_C;
@@ -64,49 +65,6 @@ static int pneunet_cell(const void *context, const int tag[3]) {
   return hollow ? CELL_CAVITY : CELL_SOLID;
 }
 
-double pneunet_height(const struct pneunet_spec *p, double x) {
-  double height = p->height_base + (p->height_tip - p->height_base) * x / p->length;
-  return height - x * (tan(p->taper_top) + tan(p->taper_bottom));
-}
-
-/* The place in a stretch of length `now`, at the base `base`, of what is at `place` at the base:
- * `below` of the stretch at its start and `above` of it at its end keep their thickness, the rest
- * is scaled. */
-static double squeeze(double place, double base, double now, double below, double above) {
-  if (place <= below) {
-    return place;
-  }
-  if (place >= base - above) {
-    return now - (base - place);
-  }
-  return below + (place - below) * (now - below - above) / (base - below - above);
-}
-
-/* Solid layers under the cavities. */
-static double floor_height(const struct pneunet_spec *p) {
-  return p->bottom_layer + (pneunet_detached(p) ? p->slit + p->slit_floor : 0);
-}
-
-static void pneunet_map(const void *context, const double grid_point[3], double x[3]) {
-  const struct pneunet_spec *p = context;
-  double angle = grid_point[1] > 0 ? p->taper_left : p->taper_right;
-  double side = 0.5 * p->width, narrowed = side - grid_point[0] * tan(angle);
-  double height = pneunet_height(p, grid_point[0]);
-  bool scaled = p->scaled_walls;
-  x[0] = grid_point[0];
-  x[1] = copysign(squeeze(fabs(grid_point[1]), side, narrowed, 0, scaled ? 0 : p->side_wall),
-                  grid_point[1]);
-  x[2] = grid_point[0] * tan(p->taper_bottom) + squeeze(grid_point[2], p->height_base, height,
-                                                        scaled ? 0 : floor_height(p),
-                                                        scaled ? 0 : p->top_wall);
-}
-
-double pneunet_bottom(const struct pneunet_spec *p, double x) {
-  double height = pneunet_height(p, x);
-  double scale = p->scaled_walls ? height / p->height_base : 1;
-  return x * tan(p->taper_bottom) + scale * p->bottom_layer;
-}
-
 bool pneunet_detached(const struct pneunet_spec *p) {
   bool detached = false;
   for (int r = 0; r < p->run_count; r++) {
@@ -124,9 +82,10 @@ static enum chamber_config config_of(const struct pneunet_spec *p, int chamber) 
 }
 
 /* Lines along the body; station[c] receives the line where chamber c starts, and
- * station[chamber_count] the last line. */
-static enum status axial_lines(const struct pneunet_spec *p, const struct pneunet_cells *n,
+ * station[chamber_count] the last line; the map receives the gaps. */
+static enum status axial_lines(struct pneunet_map *map, const struct pneunet_cells *n,
                                struct grid_axis *axis, int *station) {
+  const struct pneunet_spec *p = map->p;
   double x = 0;
   enum status status = grid_axis_extend(axis, 0, 0, 0);
   bool shared_wall = false;
@@ -147,6 +106,7 @@ static enum status axial_lines(const struct pneunet_spec *p, const struct pneune
     int after = joint ? AXIAL_JOINT : last ? end : wall;
     list[count++] = (struct stretch){x += p->gap_wall, &n->gap_wall, after};
     if (!last && !joint) {
+      map->gap[map->gap_count++] = x + 0.5 * p->chamber_gap;
       list[count++] = (struct stretch){x += p->chamber_gap, &n->gap, AXIAL_GAP};
     }
     status = stretch_extend(axis, list, count);
@@ -204,8 +164,9 @@ static enum status vertical_lines(const struct pneunet_spec *p, const struct pne
 }
 
 /* Marks the nodes of the bottom layer, and finds centreline and stations. */
-static enum status mark_sections(const struct pneunet_spec *p, const struct grid *grid,
+static enum status mark_sections(const struct pneunet_map *map, const struct grid *grid,
                                  const int *station, struct mesh *mesh) {
+  const struct pneunet_spec *p = map->p;
   const struct grid_axis *axis = grid->axis;
   for (int n = 0; n < mesh->node_count; n++) {
     const double *x = mesh->x + 3 * (size_t)n;
@@ -215,7 +176,7 @@ static enum status mark_sections(const struct pneunet_spec *p, const struct grid
     double position =
         s % 2 ? 0.5 * (axis[0].line[s / 2] + axis[0].line[s / 2 + 1]) : axis[0].line[s / 2];
     double x[3];
-    pneunet_map(p, (double[3]){position, 0, 0}, x);
+    pneunet_map_point(map, (double[3]){position, 0, 0}, x);
     mesh->centreline[s] = grid_find_node(mesh, x, s);
   }
   mesh->station_count = p->chamber_count + 1;
@@ -233,9 +194,10 @@ enum status pneunet_mesh_cells(const struct job_spec *spec, const struct pneunet
                                struct mesh *mesh, struct error *error) {
   const struct pneunet_spec *p = &spec->pneunet;
   struct grid grid = {0};
+  struct pneunet_map map = {.p = p};
   int station[CHAMBERS_MAX + 1];
   bool detached = pneunet_detached(p);
-  enum status status = axial_lines(p, cells, &grid.axis[0], station);
+  enum status status = axial_lines(&map, cells, &grid.axis[0], station);
   if (status == STATUS_OK) {
     status = lateral_lines(p, cells, spec->half_model, detached, &grid.axis[1]);
   }
@@ -246,12 +208,15 @@ enum status pneunet_mesh_cells(const struct job_spec *spec, const struct pneunet
     error_set(error, status, NULL, "no memory for the lines of the mesh");
     goto done;
   }
-  status = grid_mesh(&grid, spec->half_model, pneunet_cell, pneunet_map, p, mesh, error);
+  status = grid_mesh(&grid, spec->half_model, pneunet_cell, pneunet_map_point, &map, mesh, error);
   if (status != STATUS_OK) {
     goto done;
   }
+  if (mesh->facing_count > 0 && map.gap_count > 0) {
+    mesh->gap_width = fmin(mesh->gap_width, pneunet_gap_width(p, 0));
+  }
   mesh->wall_thickness = fmin(fmin(p->side_wall, p->gap_wall), p->top_wall);
-  status = mark_sections(p, &grid, station, mesh);
+  status = mark_sections(&map, &grid, station, mesh);
   if (status != STATUS_OK) {
     error_set(error, status, NULL, "no memory for the stations of the mesh");
     mesh_release(mesh);

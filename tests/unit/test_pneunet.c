@@ -3,10 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "solver/fe/element.h"
-#include "solver/fe/pressure.h"
 #include "solver/mesh/pneunet.h"
 #include "tests/physics/pneunet_case.h"
+#include "tests/unit/mesh_volume.h"
 #include "tests/unit/suite.h"
 
 /* ---- variants ---- */
@@ -211,41 +210,6 @@ END_TEST
 
 /* ---- volumes ---- */
 
-static double cavity_volume(const struct mesh *mesh) {
-  struct quad9_tables tables;
-  double volume = 0;
-  quad9_tables_fill(&tables);
-  for (int f = 0; f < mesh->face_count; f++) {
-    double x[QUAD9_NODES][3], force[FACE_DOFS];
-    int nodes[QUAD9_NODES];
-    if (mesh->faces[f].kind == FACE_CAVITY) {
-      mesh_face_nodes(mesh, &mesh->faces[f], nodes);
-      for (int m = 0; m < QUAD9_NODES; m++) {
-        memcpy(x[m], mesh->x + 3 * nodes[m], sizeof x[m]);
-      }
-      volume += pressure_face(&tables, x, mesh->faces[f].side, force);
-    }
-  }
-  return volume;
-}
-
-static double solid_volume(const struct mesh *mesh) {
-  struct hex27_tables tables;
-  struct element_geometry geometry;
-  double volume = 0;
-  hex27_tables_fill(&tables);
-  for (int e = 0; e < mesh->element_count; e++) {
-    double x[HEX27_NODES][3];
-    for (int a = 0; a < HEX27_NODES; a++) {
-      memcpy(x[a], mesh->x + 3 * mesh->element_nodes[HEX27_NODES * e + a], sizeof x[a]);
-    }
-    double part = element_geometry_fill(&tables, x, &geometry);
-    ck_assert_double_gt(part, 0);
-    volume += part;
-  }
-  return volume;
-}
-
 /* Void of the cavities and the channel, without tapers, from the definition of the geometry. */
 static double void_by_hand(const struct pneunet_spec *p) {
   int n = p->chamber_count, c = count_of(p, CHAMBER_C);
@@ -277,8 +241,8 @@ START_TEST(volumes_are_those_of_the_geometry) {
   double share = mesh.half ? 0.5 : 1, box = p->length * p->width * p->height_base;
   double inside = share * void_by_hand(p);
   double solid = share * (box - gaps_by_hand(p)) - inside;
-  ck_assert_double_eq_tol(cavity_volume(&mesh) / inside, 1, 1e-12);
-  ck_assert_double_eq_tol(solid_volume(&mesh) / solid, 1, 1e-12);
+  ck_assert_double_eq_tol(mesh_cavity_volume(&mesh) / inside, 1, 1e-12);
+  ck_assert_double_eq_tol(mesh_solid_volume(&mesh) / solid, 1, 1e-12);
   mesh_release(&mesh);
 }
 END_TEST
@@ -295,8 +259,8 @@ START_TEST(volumes_of_the_reference_body) {
     gap += c < 11 ? 2 * 30 * 14 * (1 - slope * (10 * c + 9)) : 0;
   }
   double box = 118 * 30 * 20 * (1 - slope * 59);
-  ck_assert_double_eq_tol(2e9 * cavity_volume(&mesh) / cavity, 1, 1e-12);
-  ck_assert_double_eq_tol(2e9 * solid_volume(&mesh) / (box - gap - cavity), 1, 1e-12);
+  ck_assert_double_eq_tol(2e9 * mesh_cavity_volume(&mesh) / cavity, 1, 1e-12);
+  ck_assert_double_eq_tol(2e9 * mesh_solid_volume(&mesh) / (box - gap - cavity), 1, 1e-12);
   mesh_release(&mesh);
 }
 END_TEST
@@ -343,8 +307,8 @@ START_TEST(volumes_of_a_tapered_body_with_constant_walls) {
     gap += c < 5 ? simpson(0.010 * c + 0.008, 0.002, gap_area, p) : 0;
   }
   double solid = simpson(0, p->length, section_area, p) - gap - cavity;
-  ck_assert_double_eq_tol(cavity_volume(&mesh) / cavity, 1, 1e-9);
-  ck_assert_double_eq_tol(solid_volume(&mesh) / solid, 1, 1e-9);
+  ck_assert_double_eq_tol(mesh_cavity_volume(&mesh) / cavity, 1, 1e-9);
+  ck_assert_double_eq_tol(mesh_solid_volume(&mesh) / solid, 1, 1e-9);
   mesh_release(&mesh);
 }
 END_TEST

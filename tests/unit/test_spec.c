@@ -245,7 +245,6 @@ static const struct refusal refusals[] = {
      "\"tip\" is missing"},
     {"/actuator/height", "true", STATUS_INVALID, "/actuator/height", "string or object"},
     {"/symmetry", "\"half\"", STATUS_INVALID, "/symmetry", "\"auto\" or \"none\""},
-    {"/actuator/gap_shape", "\"U\"", STATUS_INVALID, "/actuator/gap_shape", "\"rectangular\""},
     {"/actuator/chambers", "[]", STATUS_INVALID, "/actuator/chambers", "at least 1 item"},
     {"/actuator/chambers/1/config", "\"D\"", STATUS_INVALID, "/actuator/chambers/1/config",
      "\"A\", \"B\" or \"C\""},
