@@ -3,7 +3,7 @@
 
 build_packages=(
   build-essential autoconf automake pkg-config
-  libmicrohttpd-dev libsqlite3-dev libsundials-dev libsuitesparse-dev libopenblas-dev
+  libmicrohttpd-dev libsqlite3-dev libsundials-dev libsuitesparse-dev libopenblas-dev libgsl-dev
   libpng-dev zlib1g-dev libcairo2-dev libpango1.0-dev libjansson-dev libudunits2-dev libmd-dev check
   fonts-dejavu-core curl jq sqlite3
 )

@@ -3,6 +3,8 @@
 #include "solver/base/clock.h"
 #include "solver/estimate.h"
 #include "solver/fe/warm.h"
+#include "solver/material/curve_job.h"
+#include "solver/material/fit_job.h"
 #include "solver/mesh/actuator.h"
 #include "solver/post/deck.h"
 #include "solver/post/result.h"
@@ -128,12 +130,18 @@ static enum status solve(struct run *run, json_t **document, enum status *ending
   return status;
 }
 
-static enum status run_verify(const struct job_spec *spec, const struct run_options *options,
-                              json_t **document, enum status *ending, struct error *error) {
+/* Jobs without a body of the job's own. */
+static enum status run_other(const struct job_spec *spec, const struct run_options *options,
+                             json_t **document, enum status *ending, struct error *error) {
   if (options->deck_path) {
     return error_set(error, STATUS_INVALID, "/kind",
-                     "a verify job has no deck: it solves bodies "
-                     "of its own");
+                     "only a response job has a deck: the others have no body of their own");
+  }
+  if (spec->kind == JOB_FIT_MATERIAL) {
+    return fit_job(spec, options->cancelled, document, ending, error);
+  }
+  if (spec->kind == JOB_MATERIAL_CURVE) {
+    return curve_job(spec, document, error);
   }
   struct verify_options verify = {options->events, options->cancelled};
   return verify_job(spec, &verify, document, ending, error);
@@ -144,8 +152,8 @@ enum status run_job(const struct job_spec *spec, const struct run_options *optio
   struct run run = {.spec = spec, .options = options};
   *document = NULL;
   *ending = STATUS_OK;
-  if (spec->kind == JOB_VERIFY) {
-    return run_verify(spec, options, document, ending, error);
+  if (spec->kind != JOB_RESPONSE) {
+    return run_other(spec, options, document, ending, error);
   }
   enum status status = actuator_mesh(spec, &run.solve.mesh, error);
   if (status != STATUS_OK) {

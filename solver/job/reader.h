@@ -44,6 +44,19 @@ enum status reader_material(const struct reader *reader, const json_t *material,
 enum status reader_load(const struct reader *reader, const json_t *load,
                         enum actuator_family family, struct load_spec *spec);
 
+/* Fills *spec from the member `key` of the object `columns`, at `pointer` in the job: the name of a
+ * column and its unit, which has the dimension of `unit`. `example` is a list of such units, for
+ * errors. STATUS_OK, or STATUS_INVALID for another unit. */
+enum status reader_column(const struct reader *reader, const json_t *columns, const char *pointer,
+                          const char *key, const char *unit, const char *example,
+                          struct column_spec *spec);
+
+/* Each fills its part of the spec from the document of its kind, and checks the data. STATUS_OK,
+ * or STATUS_INVALID, TOO_LARGE or NO_MEMORY. */
+enum status reader_fit(const struct reader *reader, const json_t *document, struct job_spec *spec);
+enum status reader_material_curve(const struct reader *reader, const json_t *document,
+                                  struct job_spec *spec);
+
 /* Fills spec->sensitivity from the value of the key (NULL: no derivatives); the rest of the spec
  * has been read. STATUS_OK, or STATUS_INVALID for a pointer that names no parameter. */
 enum status reader_sensitivity(const struct reader *reader, const json_t *value,

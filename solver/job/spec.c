@@ -246,14 +246,16 @@ static enum status read_study(const struct job_reader *job_reader, const struct 
 static enum status read_kind(const struct job_reader *job_reader, const struct reader *reader,
                              const json_t *document, struct job_spec *spec) {
   const char *kind = json_string_value(json_object_get(document, "kind"));
-  return strcmp(kind, "verify") == 0  ? read_verify(reader, document, spec)
-         : strcmp(kind, "study") == 0 ? read_study(job_reader, reader, document, spec)
-                                      : read_response(reader, document, spec);
+  return strcmp(kind, "verify") == 0           ? read_verify(reader, document, spec)
+         : strcmp(kind, "study") == 0          ? read_study(job_reader, reader, document, spec)
+         : strcmp(kind, "fit-material") == 0   ? reader_fit(reader, document, spec)
+         : strcmp(kind, "material-curve") == 0 ? reader_material_curve(reader, document, spec)
+                                               : read_response(reader, document, spec);
 }
 
 /* Whether the spec alone does not say everything about the job. */
 static bool keeps_document(const struct job_spec *spec) {
-  return spec->kind != JOB_RESPONSE && spec->kind != JOB_VERIFY;
+  return spec->kind == JOB_STUDY || spec->kind == JOB_FIT_MATERIAL;
 }
 
 /* ---- the whole document ----------------------------------------------------------------- */

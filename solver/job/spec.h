@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include "solver/base/error.h"
 
-enum job_kind { JOB_RESPONSE, JOB_VERIFY, JOB_STUDY };
+enum job_kind { JOB_RESPONSE, JOB_VERIFY, JOB_STUDY, JOB_FIT_MATERIAL, JOB_MATERIAL_CURVE };
 
 /* ---- material --------------------------------------------------------------------------- */
 
@@ -167,8 +167,43 @@ struct verify_spec {
   int refinement; /* number of meshes, each finer than the one before */
 };
 
+/* ---- tables ------------------------------------------------------------------------------- */
+
+/* A column of the job's table, in the unit that the job names. */
+struct column_spec {
+  char name[200];   /* in the table's header */
+  char pointer[60]; /* of the name in the job */
+  double si;        /* one of its unit in SI */
+};
+
+enum abscissa { ABSCISSA_STRAIN, ABSCISSA_STRETCH, ABSCISSA_EXTENSION };
+
+enum { FIT_COEFFICIENTS_MAX = 6 };
+
+/* A hyperelastic law and the stress-strain curve that it is fitted to. Coefficients are numbered
+ * C1 .. C3 (Yeoh), mu (neo-Hooke), C10, C01 (Mooney-Rivlin), mu1 .. mun, alpha1 .. alphan (Ogden);
+ * moduli in Pa. */
+struct fit_spec {
+  enum material_model model;
+  int terms, count; /* of the law, and coefficients */
+  enum abscissa abscissa;
+  struct column_spec strain, stress;
+  double gauge; /* length that the extension refers to, m; with ABSCISSA_EXTENSION */
+  bool true_strain, true_stress;
+  double from, to; /* engineering strains between which the curve is fitted; may be infinite */
+  double lower[FIT_COEFFICIENTS_MAX], upper[FIT_COEFFICIENTS_MAX]; /* infinite: free */
+  double density_kg_m3, bulk_ratio;
+};
+
+/* The stretches of a material curve. */
+struct material_curve_spec {
+  double from, to;
+  int points;
+};
+
 /* Only the members of its kind are filled: of a verify job name, verify, timeout and hash; of a
- * study name, timeout, hash and document. */
+ * study name, timeout, hash and document; of a fit name, fit, timeout, hash and document; of a
+ * material curve name, material, curve and hash. */
 struct job_spec {
   enum job_kind kind;
   char name[200];
@@ -182,6 +217,8 @@ struct job_spec {
   struct metric_spec metrics;
   struct sensitivity_spec sensitivity;
   struct verify_spec verify;
+  struct fit_spec fit;
+  struct material_curve_spec curve;
   bool contact;
   struct plane_spec plane[PLANES_MAX];
   int plane_count;
@@ -225,6 +262,11 @@ enum status job_reader_check(const struct job_reader *reader, json_t *document,
  * or the failures of job_reader_create. On success the caller releases *spec. */
 enum status job_spec_read(const char *text, size_t size, struct job_spec *spec,
                           struct error *error);
+
+/* Name of a coefficient of the law that is fitted: "C1", "mu", "alpha2". Static storage. */
+const char *fit_coefficient_name(const struct fit_spec *fit, int index);
+/* Whether it is an exponent, a pure number, and no modulus. */
+bool fit_coefficient_is_exponent(const struct fit_spec *fit, int index);
 
 /* Initial shear modulus in Pa: neo-Hooke mu; Yeoh 2 c1; Mooney-Rivlin 2 (c1 + c2);
  * Ogden sum c_i alpha_i / 2. */

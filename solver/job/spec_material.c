@@ -77,6 +77,7 @@ enum status reader_material(const struct reader *reader, const json_t *material,
               json_string_value(json_object_get(material, "source")));
   spec->density_kg_m3 = reader_member(reader, material, "density", "kg/m3", 0.0);
   spec->bulk_ratio = json_number_value(json_object_get(material, "bulk_ratio"));
+  spec->fit_stretch_max = json_number_value(json_object_get(material, "fit_stretch_max"));
   enum status status = read_law(reader, material, model, spec);
   if (status != STATUS_OK) {
     return status;

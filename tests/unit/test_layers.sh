@@ -9,7 +9,7 @@ rank() {
   solver/job/*) echo 2 ;;
   solver/mesh/*) echo 3 ;;
   solver/fe/* | solver/hlpv/*) echo 4 ;;
-  solver/post/* | solver/verify/*) echo 5 ;;
+  solver/post/* | solver/verify/* | solver/material/*) echo 5 ;;
   solver/study/*) echo 6 ;;
   solver/run.[ch] | solver/main.c | solver/solve.[ch] | solver/estimate.[ch]) echo 6 ;;
   server/*) echo 7 ;;
