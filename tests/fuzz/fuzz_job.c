@@ -25,6 +25,12 @@ static bool is_complete(const struct job_spec *spec) {
   if (spec->kind == JOB_STUDY) {
     return json_is_object(spec->document) && spec->timeout_s > 0.0;
   }
+  if (spec->kind == JOB_FIT_MATERIAL) {
+    return json_is_object(spec->document) && spec->fit.count >= 1 && spec->fit.stress.si > 0.0;
+  }
+  if (spec->kind == JOB_MATERIAL_CURVE) {
+    return spec->curve.points >= 2 && material_shear_modulus(&spec->material) > 0.0;
+  }
   return spec->pneunet.cavity_length > 0.0 && spec->pneunet.length > 0.0 &&
          material_shear_modulus(&spec->material) > 0.0 && spec->load.steps >= 1;
 }
