@@ -2,6 +2,7 @@
 
 #include <pthread.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #include "server/base/clock.h"
 #include "server/base/log.h"
@@ -133,11 +134,19 @@ static void slot_finish(struct slot *slot, struct outcome *outcome) {
   pthread_mutex_unlock(&slot->pool->mutex);
 }
 
+/* Processes that the worker of a study may run at a time: a share of the cores, so that all workers
+ * together keep as many busy as there are. */
+static unsigned study_jobs(const struct pool_settings *settings) {
+  long cores = sysconf(_SC_NPROCESSORS_ONLN);
+  return cores > settings->workers ? (unsigned)cores / settings->workers : 1;
+}
+
 static void slot_run(struct slot *slot, const struct claim *claim) {
   const struct pool_settings *settings = &slot->pool->settings;
   struct run_settings run = {.data = settings->data,
                              .solver = settings->solver,
                              .memory_limit_bytes = settings->memory_limit_bytes,
+                             .study_jobs = study_jobs(settings),
                              .time_limit_s = settings->time_limit_s,
                              .timeout_margin_s = settings->timeout_margin_s};
   struct run_hooks hooks = {.context = slot,

@@ -28,6 +28,10 @@ struct lateral_need {
 };
 
 static struct lateral_need lateral_need(const struct pneunet_spec *s) {
+  if (s->scaled_walls) {
+    double cavity = s->width - 2.0 * s->side_wall;
+    return (struct lateral_need){0.5 * s->width * CAVITY_MINIMUM / cavity, "the scaled cavities"};
+  }
   struct lateral_need need = {s->side_wall + 0.5 * CAVITY_MINIMUM, "the side wall and a cavity"};
   double channel = 0.5 * s->channel_width + s->side_wall;
   if (s->has_channel && channel > need.half_width) {
@@ -140,8 +144,14 @@ static enum status check_gaps(const struct pneunet_spec *s, struct error *error)
   return STATUS_OK;
 }
 
+/* Height of the tip, of which tapers must leave so much. */
+static double tip_need(const struct pneunet_spec *s) {
+  double need = vertical_need(s), cavity = s->height_base - need + CAVITY_MINIMUM;
+  return s->scaled_walls ? s->height_base * CAVITY_MINIMUM / cavity : need;
+}
+
 static enum status check_vertical_taper(const struct pneunet_spec *s, struct error *error) {
-  double room = (fmin(s->height_base, s->height_tip) - vertical_need(s)) / s->length;
+  double room = (fmin(s->height_base, s->height_tip) - tip_need(s)) / s->length;
   double top = tan(s->taper_top), bottom = tan(s->taper_bottom);
   if (top + bottom <= room) {
     return STATUS_OK;
@@ -152,7 +162,7 @@ static enum status check_vertical_taper(const struct pneunet_spec *s, struct err
                    larger == top ? "/actuator/taper/top" : "/actuator/taper/bottom",
                    "tapers of top and bottom leave %.6g mm of height at the tip, but walls and a "
                    "cavity of 0.1 mm need %.6g mm: the limit is %.4f deg%s",
-                   to_mm(s->height_tip - s->length * (top + bottom)), to_mm(vertical_need(s)),
+                   to_mm(s->height_tip - s->length * (top + bottom)), to_mm(tip_need(s)),
                    to_deg(atan(both ? room - smaller : room)), both ? " beside the other one" : "");
 }
 

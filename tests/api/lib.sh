@@ -169,7 +169,7 @@ while [ \$# -gt 1 ]; do
   case \$1 in
     --out) out=\$2; shift 2 ;;
     --events) events=\$2; shift 2 ;;
-    --threads) shift 2 ;;
+    --threads | --jobs) shift 2 ;;
   esac
 done
 job=\$1

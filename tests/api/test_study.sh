@@ -1,0 +1,67 @@
+#!/bin/bash
+# A study through the daemon with the real solver: one job from document to table.
+. "$(dirname "$0")/lib.sh"
+limit=2048
+# The shadow memory of a sanitizer does not fit under a limit of private memory.
+grep -aqE '__(asan|tsan)_init' "$BIN/pneulab-solve" && limit=0
+start_daemon --solver "$BIN/pneulab-solve" --memory-limit "$limit" --workers 1
+
+# study [JQ EDIT]: bodies of two chambers on coarse meshes, three distinct ones of four.
+study() {
+  jq -c "${1:-.}" <<'END'
+{ "kind": "study", "name": "sides", "labels": { "suite": "api" },
+  "base": { "kind": "response",
+    "actuator": { "family": "pneunet", "length": "24 mm", "width": "20 mm", "height": "14 mm",
+      "chambers": [ { "config": "B", "count": 2 } ],
+      "side_wall": "2 mm", "top_wall": "2 mm", "bottom_layer": "4 mm" },
+    "material": "dragon-skin-20", "load": { "pressure": { "to": "4 kPa", "steps": 1 } },
+    "contact": false, "error_estimate": false, "timeout": "5 min",
+    "mesh": { "gap_wall": 1, "cavity": 1, "gap": 1, "half_width": 1, "side_wall": 1, "bottom": 1,
+      "height": 1, "top": 1 } },
+  "sampling": "grid",
+  "parameters": [ { "pointer": "/actuator/taper/left", "values": [ "0 deg", "2 deg" ] },
+    { "pointer": "/actuator/taper/right", "values": [ "0 deg", "2 deg" ] } ],
+  "ranking": { "stations": [ "12 mm", "24 mm" ] }, "timeout": "20 min" }
+END
+}
+
+fetch POST /api/v1/jobs:validate --data-binary "$(study)"
+check "it is valid" true "$(field .valid)"
+fetch POST /api/v1/jobs -H 'Prefer: wait=60' --data-binary "$(study)"
+id=$(field .id)
+check "it succeeds" succeeded "$(wait_state "$id" 'succeeded|failed|timed_out' 600)"
+fetch GET "/api/v1/jobs/$id"
+check "its kind" study "$(field .kind)"
+check "members and distinct ones are metrics" "4 4 3" \
+  "$(field '.metrics | "\(.designs) \(.solved) \(.distinct)"')"
+fetch GET "/api/v1/jobs/$id/result"
+check "every member is in the result" 4 "$(field '.members | length')"
+check "one of them as mirror image" "[null,null,1,null]" "$(field '[.members[].mirror_of]')"
+check "all of them are ranked" 4 "$(field '.ranking.designs | length')"
+check "a row of the database a member" 4 \
+  "$(sql "select count(*) from sample where job_id = $id and name = 'bending_angle_deg'")"
+check "pointers of the base are parameters of the design" 1 \
+  "$(sql "select count(*) from design_parameter where job_id = $id and pointer = '/base/actuator/width'")"
+fetch GET "/api/v1/jobs?kind=study"
+check "it is found by its kind" "$id" "$(field '.jobs[].id')"
+
+fetch POST /api/v1/jobs --data-binary "$(study '.parameters[1].values[1] = "80 deg"')"
+check "a member that cannot be is refused" "422 /parameters/1/values/1" "$CODE $(field .pointer)"
+fetch POST /api/v1/jobs --data-binary "$(study '.base = {file: "base.json"}')"
+check "so is a base in a file" "422" "$CODE"
+
+# Cancelling ends the members, too.
+heavy=$(submit "$(study '.base.mesh = null | del(.base.mesh) | .base.accuracy = "fine"
+  | .base.load.pressure.steps = 200')")
+check "a heavy study runs" running "$(wait_state "$heavy" running)"
+pid=$(sql "select pid from attempt where job_id = $heavy")
+for _ in $(seq 100); do
+  member=$(pgrep -P "$pid" | head -1)
+  [ -n "$member" ] && break
+  sleep 0.05
+done
+check_match "a process solves a member" '^[0-9]+$' "$member"
+fetch POST "/api/v1/jobs/$heavy/cancel" -H 'Prefer: wait=20'
+check "it can be cancelled" cancelled "$(field .state)"
+check "its members have ended with it" no "$(alive "$member")"
+finish
