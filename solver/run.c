@@ -8,6 +8,7 @@
 #include "solver/mesh/actuator.h"
 #include "solver/post/deck.h"
 #include "solver/post/result.h"
+#include "solver/post/result_measured.h"
 #include "solver/post/result_sensitivity.h"
 #include "solver/verify/verify.h"
 
@@ -124,7 +125,12 @@ static enum status solve(struct run *run, json_t **document, enum status *ending
         (run->sensitivity && result_sensitivity_store(run->sensitivity, *document) != STATUS_OK)) {
       json_decref(*document);
       *document = NULL;
-      status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the result document");
+      return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the result document");
+    }
+    status = result_measured_store(run->spec, *document, error);
+    if (status != STATUS_OK) {
+      json_decref(*document);
+      *document = NULL;
     }
   }
   return status;

@@ -2,7 +2,7 @@
 
 const NAMES = {
   cai_rad_per_m_kPa: ['Curvature per pressure', 'rad/(m·kPa)'],
-  r_squared: ['R² of the straight line', ''],
+  r_squared: ['R² of the fit', ''],
   intercept_deg: ['Intercept of the straight line', '°'],
   sensitivity_deg_per_kPa: ['Sensitivity', '°/kPa'],
   end_face_angle_deg: ['Angle of the end face', '°'],
@@ -32,7 +32,7 @@ const FIRST = ['bending_angle_deg', 'sensitivity_deg_per_kPa', 'r_squared', 'int
 
 // Longest endings first: the first that fits is the unit.
 const UNITS = [
-  ['_deg_per_kPa', '°/kPa'], ['_m_s', 'm/s'], ['_mm3', 'mm³'], ['_kPa', 'kPa'], ['_deg', '°'],
+  ['_deg_per_kPa', '°/kPa'], ['_m_s', 'm/s'], ['_mm3', 'mm³'], ['_MPa', 'MPa'], ['_kPa', 'kPa'], ['_deg', '°'],
   ['_pct', '%'], ['_mm', 'mm'], ['_Pa', 'Pa'], ['_MB', 'MB'], ['_ms', 'ms'], ['_N', 'N'],
   ['_g', 'g'], ['_s', 's'], ['_m', 'm'],
 ];

@@ -118,7 +118,8 @@ static enum status flatten_value(struct flattening *to, const json_t *value) {
     json_object_foreach((json_t *)value, key, child) {
       bool about_people =
           to->pointer[0] == '\0' && (strcmp(key, "name") == 0 || strcmp(key, "labels") == 0);
-      if (!about_people && status == STATUS_OK) {
+      bool table = strcmp(key, "csv") == 0; /* data, no parameter: the job's document has it */
+      if (!about_people && !table && status == STATUS_OK) {
         status = flatten_child(to, key, child);
       }
     }

@@ -111,3 +111,12 @@ const char *text_nearest(const char *text, const char *const *words, size_t coun
   }
   return nearest;
 }
+
+bool text_mentions(const char *text, const char *const *words) {
+  for (; *words; words++) {
+    if (strcasestr(text, *words)) {
+      return true;
+    }
+  }
+  return false;
+}

@@ -2,6 +2,7 @@
 #ifndef PNEULAB_BASE_TEXT_H
 #define PNEULAB_BASE_TEXT_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 /* Longest prefix of `text` of at most `limit` bytes that does not cut a UTF-8 character.
@@ -14,6 +15,10 @@ void text_repair(char *text);
 /* Writes `text` in double quotes into `out` (`size` >= 8 bytes), shortened with "..." to what
  * fits, control characters replaced by '?'. Returns `out`. */
 const char *text_quote(char *out, size_t size, const char *text);
+
+/* Whether one of the `words` (in lower case, ended by NULL) occurs in `text`, upper and lower case
+ * taken as equal. */
+bool text_mentions(const char *text, const char *const *words);
 
 /* Number of insertions, deletions, replacements and swaps of neighbours that turn `a` into
  * `b`, upper and lower case taken as equal. Texts over 64 bytes are not compared: the answer

@@ -51,6 +51,11 @@ enum status reader_column(const struct reader *reader, const json_t *columns, co
                           const char *key, const char *unit, const char *example,
                           struct column_spec *spec);
 
+/* Fills spec->measured from the document, and checks the data; the load has been read. STATUS_OK,
+ * or STATUS_INVALID, TOO_LARGE or NO_MEMORY. */
+enum status reader_measured(const struct reader *reader, const json_t *document,
+                            struct job_spec *spec);
+
 /* Each fills its part of the spec from the document of its kind, and checks the data. STATUS_OK,
  * or STATUS_INVALID, TOO_LARGE or NO_MEMORY. */
 enum status reader_fit(const struct reader *reader, const json_t *document, struct job_spec *spec);

@@ -212,6 +212,9 @@ static enum status read_response(const struct reader *reader, const json_t *docu
   if (status == STATUS_OK) {
     status = reader_sensitivity(reader, json_object_get(document, "sensitivity"), spec);
   }
+  if (status == STATUS_OK) {
+    status = reader_measured(reader, document, spec);
+  }
   spec->half_model = reader_half_model(spec);
   return status;
 }
@@ -255,7 +258,8 @@ static enum status read_kind(const struct job_reader *job_reader, const struct r
 
 /* Whether the spec alone does not say everything about the job. */
 static bool keeps_document(const struct job_spec *spec) {
-  return spec->kind == JOB_STUDY || spec->kind == JOB_FIT_MATERIAL;
+  return spec->kind == JOB_STUDY || spec->kind == JOB_FIT_MATERIAL ||
+         spec->measured.metric[0] != '\0';
 }
 
 /* ---- the whole document ----------------------------------------------------------------- */

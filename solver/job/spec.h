@@ -195,6 +195,12 @@ struct fit_spec {
   double density_kg_m3, bulk_ratio;
 };
 
+/* A measured response, to be compared with the computed one. */
+struct measured_spec {
+  struct column_spec pressure, angle;
+  char metric[40]; /* key of the samples that the angle is compared with; "" without a curve */
+};
+
 /* The stretches of a material curve. */
 struct material_curve_spec {
   double from, to;
@@ -216,6 +222,7 @@ struct job_spec {
   struct mesh_spec mesh;
   struct metric_spec metrics;
   struct sensitivity_spec sensitivity;
+  struct measured_spec measured;
   struct verify_spec verify;
   struct fit_spec fit;
   struct material_curve_spec curve;

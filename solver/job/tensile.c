@@ -1,9 +1,7 @@
 #include "solver/job/tensile.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "solver/base/table.h"
 #include "solver/base/text.h"
@@ -17,33 +15,18 @@ static const char exchanged[] = "are the columns of strain and stress exchanged,
 
 /* ---- names ------------------------------------------------------------------------------ */
 
-static bool mentions(const char *name, const char *const *words) {
-  char lower[sizeof((struct column_spec *)NULL)->name];
-  size_t length = 0;
-  for (; name[length] && length + 1 < sizeof lower; length++) {
-    lower[length] = (char)tolower((unsigned char)name[length]);
-  }
-  lower[length] = '\0';
-  for (; *words; words++) {
-    if (strstr(lower, *words)) {
-      return true;
-    }
-  }
-  return false;
-}
-
 /* Refuses columns whose names say the opposite of their use. */
 static enum status check_names(const struct fit_spec *fit, struct error *error) {
   static const char *const strains[] = {"strain",       "stretch",    "extension",
                                         "displacement", "elongation", NULL};
   static const char *const stresses[] = {"stress", "mpa", "kpa", "n/mm2", NULL};
   char name[80];
-  if (mentions(fit->strain.name, stresses) && !mentions(fit->strain.name, strains)) {
+  if (text_mentions(fit->strain.name, stresses) && !text_mentions(fit->strain.name, strains)) {
     return error_set(error, STATUS_INVALID, fit->strain.pointer,
                      "by its name the column %s holds a stress, not a strain: %s",
                      text_quote(name, sizeof name, fit->strain.name), exchanged);
   }
-  if (mentions(fit->stress.name, strains) && !mentions(fit->stress.name, stresses)) {
+  if (text_mentions(fit->stress.name, strains) && !text_mentions(fit->stress.name, stresses)) {
     return error_set(error, STATUS_INVALID, fit->stress.pointer,
                      "by its name the column %s holds a strain, not a stress: %s",
                      text_quote(name, sizeof name, fit->stress.name), exchanged);

@@ -81,7 +81,7 @@ enum status stability_report(const struct material_spec *material, double low, d
       if (!stable) {
         failed |= json_array_append_new(
             warnings, json_sprintf("the law is not stable (Drucker) in %s %s from a stretch of "
-                                   "%.4g on, within the range it is meant for",
+                                   "%.4g on, within the range of this job",
                                    deformation_word(d), word, lost));
       } else if (is_within(peak, low, high)) {
         failed |= json_array_append_new(
