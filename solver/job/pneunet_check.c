@@ -183,5 +183,8 @@ enum status pneunet_check(const struct pneunet_spec *s, struct error *error) {
   if (status == STATUS_OK) {
     status = check_lateral_taper(s, s->taper_right, "/actuator/taper/right", error);
   }
-  return status == STATUS_OK ? check_vertical_taper(s, error) : status;
+  if (status == STATUS_OK) {
+    status = check_vertical_taper(s, error);
+  }
+  return status == STATUS_OK ? pneunet_check_suckers(s, error) : status;
 }

@@ -83,6 +83,9 @@ enum status oblique_fit(bool chambers_given, struct oblique_spec *spec, struct e
 /* Largest angle to the cross-section, rad. */
 #define OBLIQUE_ANGLE_MAX (80.0 / 180.0 * 3.14159265358979323846)
 
+/* The part of pneunet_check that is about the suckers. */
+enum status pneunet_check_suckers(const struct pneunet_spec *spec, struct error *error);
+
 /* SHA-256 of the canonical text of the document (sorted keys, no spaces, whole reals as integers)
  * without name, labels and comments, as 64 hexadecimal digits. STATUS_OK or STATUS_NO_MEMORY. */
 enum status job_hash(const json_t *document, char hash[65], struct error *error);

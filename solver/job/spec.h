@@ -58,6 +58,16 @@ struct chamber_run {
 
 enum { CHAMBER_RUNS_MAX = 32, CHAMBERS_MAX = 64 };
 
+enum { SUCKERS_MAX = 16 };
+
+/* A cup below the bottom face: a ring of silicone around a round opening. Lengths in m. */
+struct sucker_spec {
+  double position; /* of its middle along x; across, it is in the middle of the body */
+  double diameter; /* of the opening; the ring is around it */
+  double depth;    /* by which the ring protrudes */
+  double wall;     /* thickness of the ring */
+};
+
 /* The dimensions as the job gives them, in m and rad; NAN where it is silent. */
 struct pneunet_given {
   double length, chamber_length, width, height, height_base, height_tip;
@@ -91,6 +101,9 @@ struct pneunet_spec {
   bool has_channel;
   double channel_width, channel_height, channel_cover;
   double taper_top, taper_bottom, taper_left, taper_right;
+  struct sucker_spec sucker[SUCKERS_MAX];
+  int sucker_count;
+  double suction_pressure; /* by which the suckers are evacuated, Pa */
   bool scaled_walls; /* tapers thin the walls with the section; else walls keep their thickness */
 };
 

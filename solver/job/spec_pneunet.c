@@ -187,6 +187,20 @@ const struct pneunet_dimension pneunet_dimensions[PNEUNET_DIMENSIONS] = {
     DIMENSION("taper", "right", "deg", taper_right),
 };
 
+static void read_suckers(const struct reader *reader, const json_t *actuator,
+                         struct pneunet_spec *spec) {
+  size_t index;
+  json_t *sucker;
+  json_array_foreach(json_object_get(actuator, "suckers"), index, sucker) {
+    spec->sucker[spec->sucker_count++] =
+        (struct sucker_spec){.position = reader_member(reader, sucker, "position", "mm", 0.0),
+                             .diameter = reader_member(reader, sucker, "diameter", "mm", 0.0),
+                             .depth = reader_member(reader, sucker, "depth", "mm", 0.0),
+                             .wall = reader_member(reader, sucker, "wall", "mm", 0.0)};
+  }
+  spec->suction_pressure = reader_member(reader, actuator, "suction_pressure", "kPa", 0.0);
+}
+
 enum status reader_pneunet(const struct reader *reader, const json_t *actuator,
                            struct pneunet_given *given, struct pneunet_spec *spec) {
   const char *walls = json_string_value(json_object_get(actuator, "tapered_walls"));
@@ -201,6 +215,7 @@ enum status reader_pneunet(const struct reader *reader, const json_t *actuator,
     double *value = (double *)((char *)given + dimension->offset);
     *value = json_is_string(member) ? reader_quantity(reader, member, dimension->unit) : NAN;
   }
+  read_suckers(reader, actuator, spec);
   enum status status = read_chambers(reader, json_object_get(actuator, "chambers"), spec);
   if (status == STATUS_OK) {
     status = pneunet_derive(given, spec, reader->error);

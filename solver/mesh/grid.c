@@ -63,6 +63,26 @@ enum status grid_axis_extend(struct grid_axis *axis, double end, int cells, int 
   return STATUS_OK;
 }
 
+enum status grid_axis_insert(struct grid_axis *axis, double at) {
+  int last = axis->line_count - 1, l = 0;
+  double near = 1e-6 * (axis->line[last] - axis->line[0]);
+  while (l <= last && axis->line[l] < at - near) {
+    l++;
+  }
+  if (l == 0 || l > last || axis->line[l] <= at + near) {
+    return STATUS_OK;
+  }
+  if (reserve_lines(axis, 1) != STATUS_OK) {
+    return STATUS_NO_MEMORY;
+  }
+  size_t after = (size_t)(last - l);
+  memmove(axis->line + l + 1, axis->line + l, sizeof *axis->line * (after + 1));
+  memmove(axis->tag + l, axis->tag + l - 1, sizeof *axis->tag * (after + 1));
+  axis->line[l] = at;
+  axis->line_count++;
+  return STATUS_OK;
+}
+
 void grid_release(struct grid *grid) {
   for (int d = 0; d < 3; d++) {
     free(grid->axis[d].line);

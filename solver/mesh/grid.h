@@ -4,8 +4,9 @@
 
 #include "solver/mesh/mesh.h"
 
-/* CELL_CAVITY + c is a cell of cavity c < MESH_CAVITIES, each with a pressure of its own. */
-enum cell_kind { CELL_SOLID, CELL_GAP, CELL_CAVITY };
+/* Across cells of CELL_GAP the solid faces itself; those of CELL_EMPTY are outside without that.
+ * CELL_CAVITY + c is a cell of cavity c < MESH_CAVITIES, each with a pressure of its own. */
+enum cell_kind { CELL_SOLID, CELL_GAP, CELL_EMPTY, CELL_CAVITY };
 
 /* One grid axis: line_count lines bound line_count - 1 cells; tag[c] says which feature cell c
  * belongs to (meaning up to the caller). */
@@ -37,6 +38,10 @@ enum status grid_axis_divide(struct grid_axis *axis, double end,
 /* Appends `cells` equal cells up to coordinate `end`. The first call sets the start with
  * cells = 0. Returns STATUS_OK or STATUS_NO_MEMORY. */
 enum status grid_axis_extend(struct grid_axis *axis, double end, int cells, int tag);
+
+/* Cuts the cell around coordinate `at` in two of its tag; nothing happens where a line is already,
+ * to within a millionth of the axis, or outside. Returns STATUS_OK or STATUS_NO_MEMORY. */
+enum status grid_axis_insert(struct grid_axis *axis, double at);
 
 void grid_release(struct grid *grid);
 

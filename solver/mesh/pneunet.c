@@ -22,6 +22,7 @@ enum lateral_tag { LATERAL_CHANNEL, LATERAL_STEM, LATERAL_INNER, LATERAL_SIDE };
 
 /* Features from the bottom face to the top. */
 enum vertical_tag {
+  VERTICAL_SUCKER, /* below the bottom face */
   VERTICAL_BOTTOM, /* bottom layer below the channel, or all of it without one */
   VERTICAL_CHANNEL,
   VERTICAL_COVER, /* bottom layer above the channel */
@@ -36,12 +37,15 @@ static bool tag_is_void_axial(int tag) {
 }
 
 static int pneunet_cell(const void *context, const int tag[3]) {
-  const struct pneunet_spec *p = ((const struct pneunet_map *)context)->p;
-  int axial = tag[0], lateral = tag[1], vertical = tag[2];
+  const struct pneunet_map *map = context;
+  const struct pneunet_spec *p = map->p;
+  int axial = tag[0] % SUCKER_TAG, lateral = tag[1] % SUCKER_TAG, vertical = tag[2];
   bool over_channel = p->has_channel && lateral == LATERAL_CHANNEL;
   bool detached = axial == AXIAL_CAVITY_C || axial == AXIAL_WALL_C || axial == AXIAL_END_C;
   bool end = axial == AXIAL_END || axial == AXIAL_END_C;
   switch (vertical) {
+  case VERTICAL_SUCKER:
+    return suckers_solid(&map->suckers, tag[0], tag[1]) ? CELL_SOLID : CELL_EMPTY;
   case VERTICAL_BOTTOM:
     return CELL_SOLID;
   case VERTICAL_CHANNEL:
@@ -81,10 +85,10 @@ static enum chamber_config config_of(const struct pneunet_spec *p, int chamber) 
   return p->runs[run].config;
 }
 
-/* Lines along the body; station[c] receives the line where chamber c starts, and
- * station[chamber_count] the last line; the map receives the gaps. */
+/* Lines along the body; start[c] receives the place where chamber c starts, and
+ * start[chamber_count] the end; the map receives the gaps. */
 static enum status axial_lines(struct pneunet_map *map, const struct pneunet_cells *n,
-                               struct grid_axis *axis, int *station) {
+                               struct grid_axis *axis, double *start) {
   const struct pneunet_spec *p = map->p;
   double x = 0;
   enum status status = grid_axis_extend(axis, 0, 0, 0);
@@ -96,7 +100,7 @@ static enum status axial_lines(struct pneunet_map *map, const struct pneunet_cel
     int wall = config == CHAMBER_C ? AXIAL_WALL_C : AXIAL_WALL;
     int end = config == CHAMBER_C ? AXIAL_END_C : AXIAL_END;
     int cavity = config == CHAMBER_C ? AXIAL_CAVITY_C : AXIAL_CAVITY;
-    station[c] = axis->line_count - 1;
+    start[c] = axis->line[axis->line_count - 1];
     struct stretch list[4];
     int count = 0;
     if (!shared_wall) {
@@ -112,7 +116,7 @@ static enum status axial_lines(struct pneunet_map *map, const struct pneunet_cel
     status = stretch_extend(axis, list, count);
     shared_wall = joint;
   }
-  station[p->chamber_count] = axis->line_count - 1;
+  start[p->chamber_count] = axis->line[axis->line_count - 1];
   return status;
 }
 
@@ -134,12 +138,13 @@ static enum status lateral_lines(const struct pneunet_spec *p, const struct pneu
   return status == STATUS_OK ? stretch_extend(axis, list, count) : status;
 }
 
-/* Lines from bottom to top. */
+/* Lines from bottom to top; suckers go down to -depth. */
 static enum status vertical_lines(const struct pneunet_spec *p, const struct pneunet_cells *n,
-                                  bool detached, struct grid_axis *axis) {
+                                  double depth, bool detached, struct grid_axis *axis) {
   double b = p->bottom_layer, h = p->height_base;
-  struct stretch below[3];
+  struct stretch below[4];
   int count = 0;
+  below[count++] = (struct stretch){0, &n->sucker, VERTICAL_SUCKER};
   if (p->has_channel) {
     double ceiling = b - p->channel_cover;
     below[count++] = (struct stretch){ceiling - p->channel_height, &n->below, VERTICAL_BOTTOM};
@@ -148,7 +153,7 @@ static enum status vertical_lines(const struct pneunet_spec *p, const struct pne
   } else {
     below[count++] = (struct stretch){b, &n->bottom, VERTICAL_BOTTOM};
   }
-  enum status status = grid_axis_extend(axis, 0, 0, 0);
+  enum status status = grid_axis_extend(axis, -depth, 0, 0);
   if (status == STATUS_OK) {
     status = stretch_extend(axis, below, count);
   }
@@ -163,14 +168,24 @@ static enum status vertical_lines(const struct pneunet_spec *p, const struct pne
   return status == STATUS_OK ? stretch_extend(axis, above, count) : status;
 }
 
-/* Marks the nodes of the bottom layer, and finds centreline and stations. */
+static int line_at(const struct grid_axis *axis, double x) {
+  int line = 0;
+  while (line + 1 < axis->line_count && 2 * x > axis->line[line] + axis->line[line + 1]) {
+    line++;
+  }
+  return line;
+}
+
+/* Marks the nodes of the bottom layer, without suckers, and finds centreline and stations. */
 static enum status mark_sections(const struct pneunet_map *map, const struct grid *grid,
-                                 const int *station, struct mesh *mesh) {
+                                 const double *start, struct mesh *mesh) {
   const struct pneunet_spec *p = map->p;
   const struct grid_axis *axis = grid->axis;
   for (int n = 0; n < mesh->node_count; n++) {
     const double *x = mesh->x + 3 * (size_t)n;
-    mesh->node_core[n] = x[2] <= pneunet_bottom(p, x[0]) + 1e-9 * p->height_base;
+    double slack = 1e-9 * p->height_base;
+    mesh->node_core[n] =
+        x[2] <= pneunet_bottom(p, x[0]) + slack && x[2] >= x[0] * tan(p->taper_bottom) - slack;
   }
   for (int s = 0; s < mesh->section_count; s++) {
     double position =
@@ -185,9 +200,61 @@ static enum status mark_sections(const struct pneunet_map *map, const struct gri
     return STATUS_NO_MEMORY;
   }
   for (int s = 0; s < mesh->station_count; s++) {
-    mesh->station[s] = 2 * station[s];
+    mesh->station[s] = 2 * line_at(&axis[0], start[s]);
   }
   return STATUS_OK;
+}
+
+/* Plans the suckers by the lines of the unsplit cells, which a finer mesh has as well, and puts
+ * their lines into the axes. */
+static enum status place_suckers(struct pneunet_map *map, const struct pneunet_cells *cells,
+                                 bool half, struct grid *grid) {
+  const struct pneunet_spec *p = map->p;
+  struct pneunet_cells plain = *cells;
+  struct pneunet_map unused = {.p = p};
+  struct grid coarse = {0};
+  double start[CHAMBERS_MAX + 1];
+  if (p->sucker_count == 0) {
+    return STATUS_OK;
+  }
+  plain.gap_wall.split = plain.cavity.split = plain.gap.split = 1;
+  plain.channel.split = plain.stem.split = plain.half_width.split = plain.side_wall.split = 1;
+  enum status status = axial_lines(&unused, &plain, &coarse.axis[0], start);
+  if (status == STATUS_OK) {
+    status = lateral_lines(p, &plain, half, pneunet_detached(p), &coarse.axis[1]);
+  }
+  if (status == STATUS_OK) {
+    status = suckers_plan(p, &coarse.axis[0], &coarse.axis[1], &map->suckers);
+  }
+  if (status == STATUS_OK) {
+    status = suckers_mark(&map->suckers, &grid->axis[0], &grid->axis[1]);
+  }
+  grid_release(&coarse);
+  return status;
+}
+
+/* All lines of the grid. */
+static enum status make_axes(struct pneunet_map *map, const struct pneunet_cells *cells, bool half,
+                             struct grid *grid, double *start) {
+  bool detached = pneunet_detached(map->p);
+  enum status status = axial_lines(map, cells, &grid->axis[0], start);
+  if (status == STATUS_OK) {
+    status = lateral_lines(map->p, cells, half, detached, &grid->axis[1]);
+  }
+  if (status == STATUS_OK) {
+    status = place_suckers(map, cells, half, grid);
+  }
+  return status == STATUS_OK
+             ? vertical_lines(map->p, cells, map->suckers.depth, detached, &grid->axis[2])
+             : status;
+}
+
+static double thinnest_wall(const struct pneunet_spec *p) {
+  double wall = fmin(fmin(p->side_wall, p->gap_wall), p->top_wall);
+  for (int k = 0; k < p->sucker_count; k++) {
+    wall = fmin(wall, p->sucker[k].wall);
+  }
+  return wall;
 }
 
 enum status pneunet_mesh_cells(const struct job_spec *spec, const struct pneunet_cells *cells,
@@ -195,15 +262,8 @@ enum status pneunet_mesh_cells(const struct job_spec *spec, const struct pneunet
   const struct pneunet_spec *p = &spec->pneunet;
   struct grid grid = {0};
   struct pneunet_map map = {.p = p};
-  int station[CHAMBERS_MAX + 1];
-  bool detached = pneunet_detached(p);
-  enum status status = axial_lines(&map, cells, &grid.axis[0], station);
-  if (status == STATUS_OK) {
-    status = lateral_lines(p, cells, spec->half_model, detached, &grid.axis[1]);
-  }
-  if (status == STATUS_OK) {
-    status = vertical_lines(p, cells, detached, &grid.axis[2]);
-  }
+  double start[CHAMBERS_MAX + 1];
+  enum status status = make_axes(&map, cells, spec->half_model, &grid, start);
   if (status != STATUS_OK) {
     error_set(error, status, NULL, "no memory for the lines of the mesh");
     goto done;
@@ -215,13 +275,14 @@ enum status pneunet_mesh_cells(const struct job_spec *spec, const struct pneunet
   if (mesh->facing_count > 0 && map.gap_count > 0) {
     mesh->gap_width = fmin(mesh->gap_width, pneunet_gap_width(p, 0));
   }
-  mesh->wall_thickness = fmin(fmin(p->side_wall, p->gap_wall), p->top_wall);
-  status = mark_sections(&map, &grid, station, mesh);
+  mesh->wall_thickness = thinnest_wall(p);
+  status = mark_sections(&map, &grid, start, mesh);
   if (status != STATUS_OK) {
     error_set(error, status, NULL, "no memory for the stations of the mesh");
     mesh_release(mesh);
   }
 done:
+  suckers_release(&map.suckers);
   grid_release(&grid);
   return status;
 }

@@ -11,8 +11,8 @@ struct pneunet_cells {
   struct grid_division gap_wall, cavity, gap;
   /* from the middle to a side face: half the channel, the rest of the stem, half a cavity, wall */
   struct grid_division channel, stem, half_width, side_wall;
-  /* from the bottom face to the top, without a channel: bottom; else below, duct, cover */
-  struct grid_division bottom, below, duct, cover, slit, floor, height, top;
+  /* from the bottom up: suckers; without a channel bottom, else below, duct, cover; and so on */
+  struct grid_division sucker, bottom, below, duct, cover, slit, floor, height, top;
 };
 
 /* Cells as chosen by the job (equal ones) or, where it is silent, by its accuracy tier. */

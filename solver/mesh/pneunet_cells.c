@@ -16,11 +16,14 @@ static const double squat_ratio = 0.75;
 /* So have walls thicker than this part of the cavity's length. */
 static const double thick_ratio = 0.4;
 
+/* Longest cell of a sucker's ring relative to its thickness. */
+static const double sucker_ratio = 3;
+
 /* What the tiers have in common; where a feature has one cell, its length changes little. */
 #define PLAIN_CELLS                                                                                \
   .gap = {.cells = 1}, .channel = {.cells = 2}, .stem = {.cells = 1}, .side_wall = {.cells = 1},   \
   .below = {.cells = 1}, .duct = {.cells = 1}, .cover = {.cells = 1}, .slit = {.cells = 1},        \
-  .floor = {.cells = 1}, .top = {.cells = 1}
+  .floor = {.cells = 1}, .top = {.cells = 1}, .sucker = {.cells = 1}
 
 static const struct tier tiers[] = {
     [ACCURACY_FAST] = {{PLAIN_CELLS, .gap_wall = {.cells = 1}, .cavity = {.cells = 2},
@@ -49,7 +52,8 @@ static const struct tier tiers[] = {
                         .slit = {.cells = 1},
                         .floor = {.cells = 1},
                         .height = {.cells = 4, .first = 0.2, .last = 0.5},
-                        .top = {.cells = 2}},
+                        .top = {.cells = 2},
+                        .sucker = {.cells = 2}},
                        .cavity = 0.35,
                        .half_width = 1},
 };
@@ -106,6 +110,9 @@ struct pneunet_cells pneunet_resolution(const struct job_spec *spec) {
   }
   if (spec->accuracy == ACCURACY_STANDARD && has_joint(p) && cells.cavity.cells < 3) {
     cells.cavity = (struct grid_division){.cells = 3, .first = 0.5, .last = 0.5};
+  }
+  for (int k = 0; k < p->sucker_count; k++) {
+    limit(p->sucker[k].depth, sucker_ratio * p->sucker[k].wall, &cells.sucker);
   }
   choose(spec->mesh.gap_wall, &cells.gap_wall);
   choose(spec->mesh.cavity, &cells.cavity);

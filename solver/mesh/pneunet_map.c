@@ -68,16 +68,54 @@ static double gap_shift(const struct pneunet_map *map, const double grid_point[3
   return off < 0 ? -fade * shift : fade * shift;
 }
 
+double pneunet_lateral(const struct pneunet_spec *p, double y, double x) {
+  double side = 0.5 * p->width, angle = y > 0 ? p->taper_left : p->taper_right;
+  double wall = p->scaled_walls ? 0 : p->side_wall;
+  return copysign(squeeze(fabs(y), side, side - x * tan(angle), 0, wall), y);
+}
+
+/* Share of the suckers' displacement at y and z: whole on the bottom face and below, none above
+ * the bottom layer nor in the channel. */
+static double sucker_share(const struct pneunet_spec *p, double y, double z) {
+  double end = p->bottom_layer;
+  if (p->has_channel) {
+    double below = p->bottom_layer - p->channel_cover - p->channel_height;
+    double beside = fmax(0, fmin(1, 2 * fabs(y) / p->channel_width - 1));
+    end = below + beside * (p->bottom_layer - below);
+  }
+  return fmax(0, 1 - fmax(0, z) / end);
+}
+
+/* Displacement in the plane of a point of the grid that makes the suckers round; *depth receives
+ * the depth of the sucker at its place, or is left alone. */
+static void sucker_shift(const struct pneunet_map *map, const double grid_point[3], double *depth,
+                         double shift[2]) {
+  const struct pneunet_spec *p = map->p;
+  double x = grid_point[0], y = grid_point[1], side = y < 0 ? -1 : 1;
+  const struct sucker_frame *f = suckers_frame(&map->suckers, x);
+  shift[0] = shift[1] = 0;
+  if (f) {
+    const double line[3] = {fabs(pneunet_lateral(p, side * f->inner_y, x)),
+                            fabs(pneunet_lateral(p, side * f->outer_y, x)),
+                            fabs(pneunet_lateral(p, side * 0.5 * p->width, x))};
+    double share = sucker_share(p, y, grid_point[2]);
+    suckers_displace(f, x, pneunet_lateral(p, y, x), line, shift);
+    shift[0] *= share;
+    shift[1] *= share;
+    *depth = f->depth;
+  }
+}
+
 void pneunet_map_point(const void *context, const double grid_point[3], double x[3]) {
   const struct pneunet_map *map = context;
   const struct pneunet_spec *p = map->p;
-  bool scaled = p->scaled_walls;
-  double angle = grid_point[1] > 0 ? p->taper_left : p->taper_right;
-  x[0] = grid_point[0] + gap_shift(map, grid_point);
-  double side = 0.5 * p->width, narrowed = side - x[0] * tan(angle);
-  x[1] = copysign(squeeze(fabs(grid_point[1]), side, narrowed, 0, scaled ? 0 : p->side_wall),
-                  grid_point[1]);
-  x[2] =
-      x[0] * tan(p->taper_bottom) + squeeze(grid_point[2], p->height_base, pneunet_height(p, x[0]),
-                                            scaled ? 0 : floor_height(p), scaled ? 0 : p->top_wall);
+  double shift[2], depth = map->suckers.depth;
+  sucker_shift(map, grid_point, &depth, shift);
+  double z = grid_point[2] < 0 ? grid_point[2] * depth / map->suckers.depth : grid_point[2];
+  double at = grid_point[0] + gap_shift(map, grid_point);
+  x[0] = at + shift[0];
+  x[1] = pneunet_lateral(p, grid_point[1], at) + shift[1];
+  x[2] = x[0] * tan(p->taper_bottom) + squeeze(z, p->height_base, pneunet_height(p, x[0]),
+                                               p->scaled_walls ? 0 : floor_height(p),
+                                               p->scaled_walls ? 0 : p->top_wall);
 }

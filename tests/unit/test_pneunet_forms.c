@@ -1,4 +1,4 @@
-/* Forms of pneu-nets beyond boxes: shapes of the gaps. */
+/* Forms of pneu-nets beyond boxes: shapes of the gaps, suckers. */
 #include <math.h>
 #include <string.h>
 
@@ -178,6 +178,141 @@ START_TEST(gap_limits) {
 }
 END_TEST
 
+/* ---- suckers ---------------------------------------------------------------------------- */
+
+#define THREE_SUCKERS                                                                              \
+  "[{\"position\": \"40 mm\", \"diameter\": \"20 mm\"},"                                           \
+  " {\"position\": \"70 mm\", \"diameter\": \"18 mm\", \"wall\": \"1 mm\"},"                       \
+  " {\"position\": \"100 mm\", \"diameter\": \"16 mm\", \"depth\": \"5 mm\"}]"
+
+static double rings_by_hand(const struct pneunet_spec *p) {
+  double volume = 0;
+  for (int k = 0; k < p->sucker_count; k++) {
+    const struct sucker_spec *s = &p->sucker[k];
+    volume += M_PI * s->wall * (s->diameter + s->wall) * s->depth;
+  }
+  return volume;
+}
+
+static const char *const bodies[][6][2] = {
+    {{"/actuator/suckers", THREE_SUCKERS}},
+    {{"/actuator/suckers", THREE_SUCKERS}, {"/actuator/taper", "{}"}},
+    {{"/actuator/suckers", THREE_SUCKERS}, {"/symmetry", "\"none\""}},
+    {{"/actuator/suckers", THREE_SUCKERS},
+     {"/actuator/taper", "{\"left\": \"0.5 deg\", \"right\": \"2.5 deg\"}"}},
+    {{"/actuator/suckers", THREE_SUCKERS}, {"/actuator/tapered_walls", "\"scaled\""}},
+    {{"/actuator/suckers", THREE_SUCKERS},
+     {"/actuator/taper", "{\"bottom\": \"1 deg\", \"top\": \"1 deg\", \"left\": \"2 deg\","
+                         " \"right\": \"2 deg\"}"}},
+    {{"/actuator/suckers", THREE_SUCKERS}, {"/actuator/gap_shape", "\"V\""}},
+    {{"/actuator/suckers", THREE_SUCKERS}, {"/actuator/channel", NULL}},
+    {{"/actuator/suckers", THREE_SUCKERS}, {"/actuator/channel/width", "\"10 mm\""}},
+    {{"/actuator/suckers", THREE_SUCKERS},
+     {"/actuator/chambers", "[{\"config\": \"A\", \"count\": 2}]"}},
+    /* a hundredth of a millimetre within the limits, on all sides */
+    {{"/actuator/suckers", "[{\"position\": \"8.61 mm\", \"diameter\": \"14 mm\"},"
+                           " {\"position\": \"25.73 mm\", \"diameter\": \"14 mm\"},"
+                           " {\"position\": \"108.5 mm\", \"diameter\": \"15.8 mm\"}]"}},
+    /* of very different sizes, thin and thick */
+    {{"/actuator/suckers",
+      "[{\"position\": \"30 mm\", \"diameter\": \"24 mm\", \"wall\": \"0.3 mm\"},"
+      " {\"position\": \"50 mm\", \"diameter\": \"6 mm\", \"wall\": \"3 mm\"},"
+      " {\"position\": \"70 mm\", \"diameter\": \"2 mm\", \"wall\": \"1 mm\", \"depth\": \"20 "
+      "mm\"},"
+      " {\"position\": \"98 mm\", \"diameter\": \"15 mm\", \"depth\": \"0.1 mm\"}]"}},
+    /* tiny and long beside one long cavity */
+    {{"/actuator/suckers",
+      "[{\"position\": \"59 mm\", \"diameter\": \"1 mm\", \"wall\": \"0.2 mm\"}]"},
+     {"/actuator/chambers", "[{\"config\": \"B\", \"count\": 1}]"}},
+    /* a body that ends in a point, almost */
+    {{"/actuator/suckers", "[{\"position\": \"105 mm\", \"diameter\": \"7 mm\"}]"},
+     {"/actuator/stem", "\"3 mm\""},
+     {"/actuator/taper", "{\"left\": \"5.3 deg\", \"right\": \"5.3 deg\"}"}},
+};
+enum { BODIES = sizeof bodies / sizeof *bodies };
+
+/* The rings add their own volume and change no other; no element is inverted. */
+START_TEST(suckers_add_their_rings) {
+  const char *edits[8][2] = {{NULL, NULL}};
+  struct job_spec with;
+  memcpy(edits, bodies[_i], sizeof bodies[_i]);
+  suite_must_read_edited((const char *const(*)[2])edits, &with);
+  struct job_spec without = with;
+  without.pneunet.sucker_count = 0;
+  for (int tier = ACCURACY_FAST; tier <= ACCURACY_FINE; tier++) {
+    with.accuracy = without.accuracy = (enum accuracy)tier;
+    double added = solid(&with, 1) - solid(&without, 1);
+    ck_assert_double_eq_tol(added / rings_by_hand(&with.pneunet), 1, 5e-3);
+  }
+}
+END_TEST
+
+/* Every node of the rings lies between two circles, and the centreline stays in the middle of the
+ * bottom face. */
+START_TEST(suckers_are_round) {
+  struct job_spec spec;
+  struct mesh mesh;
+  suite_must_read("/actuator/suckers", THREE_SUCKERS, &spec);
+  const struct pneunet_spec *p = &spec.pneunet;
+  ck_assert_int_eq(pneunet_mesh(&spec, &mesh, NULL), STATUS_OK);
+  int on_circle[3] = {0};
+  for (int n = 0; n < mesh.node_count; n++) {
+    const double *x = mesh.x + 3 * n;
+    if (x[2] >= -1e-9) {
+      continue;
+    }
+    int k = x[0] < 0.055 ? 0 : x[0] < 0.085 ? 1 : 2;
+    const struct sucker_spec *s = &p->sucker[k];
+    double r = hypot(x[0] - s->position, x[1]), opening = 0.5 * s->diameter;
+    ck_assert_double_ge(r, opening - 1e-12);
+    ck_assert_double_le(r, opening + s->wall + 1e-12);
+    ck_assert_double_ge(x[2], -s->depth - 1e-12);
+    ck_assert(!mesh.node_core[n]);
+    on_circle[k] += fabs(r - opening) < 1e-12 || fabs(r - opening - s->wall) < 1e-12;
+  }
+  for (int k = 0; k < 3; k++) {
+    ck_assert_int_gt(on_circle[k], 40);
+  }
+  for (int s = 0; s < mesh.section_count; s++) {
+    const double *x = mesh.x + 3 * mesh.centreline[s];
+    ck_assert(x[1] == 0 && fabs(x[2]) < 1e-15);
+    ck_assert(s == 0 || x[0] > mesh.x[3 * mesh.centreline[s - 1]]);
+  }
+  mesh_release(&mesh);
+}
+END_TEST
+
+#define AT(position, rest) "[{\"position\": \"" position "\"" rest "}]"
+
+static const struct refusal sucker_refusals[] = {
+    {"/actuator/suckers", AT("40 mm", ""), STATUS_INVALID, "/actuator/suckers/0",
+     "\"diameter\" is missing"},
+    {"/actuator/suckers", AT("40 mm", ", \"diameter\": 20"), STATUS_INVALID,
+     "/actuator/suckers/0/diameter", "write \"20 mm\""},
+    {"/actuator/suckers", AT("40 mm", ", \"diameter\": \"0 mm\""), STATUS_INVALID,
+     "/actuator/suckers/0/diameter", "at least 1 um"},
+    {"/actuator/suckers", "{}", STATUS_INVALID, "/actuator/suckers", "must be an array"},
+    {"/actuator/suckers", AT("11.5 mm", ", \"diameter\": \"20 mm\""), STATUS_GEOMETRY,
+     "/actuator/suckers/0/position", "at its base: the middle must be between 11.6 mm and 106.4"},
+    {"/actuator/suckers", AT("110 mm", ", \"diameter\": \"15 mm\""), STATUS_GEOMETRY,
+     "/actuator/suckers/0/position", "at its tip: the middle must be between 9.1 mm and 108.9 mm"},
+    {"/actuator/suckers", AT("100 mm", ", \"diameter\": \"20 mm\""), STATUS_GEOMETRY,
+     "/actuator/suckers/0/diameter", "the diameter can be at most 19.8"},
+    {"/actuator/suckers", AT("50 mm", ", \"diameter\": \"4 mm\", \"wall\": \"2.1 mm\""),
+     STATUS_GEOMETRY, "/actuator/suckers/0/wall", "at most 2 mm"},
+    {"/actuator/suckers",
+     "[{\"position\": \"40 mm\", \"diameter\": \"20 mm\"},"
+     " {\"position\": \"61 mm\", \"diameter\": \"16 mm\"}]",
+     STATUS_GEOMETRY, "/actuator/suckers/1/position", "at least 21.1 mm"},
+    {"/actuator/suction_pressure", "\"200 kPa\"", STATUS_INVALID, "/actuator/suction_pressure",
+     "at most 101"},
+};
+
+START_TEST(sucker_refusals_name_the_limit) {
+  suite_check_refusal(&sucker_refusals[_i]);
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("pneunet: forms");
   TCase *gaps = tcase_create("gaps");
@@ -189,5 +324,12 @@ int main(void) {
   tcase_add_loop_test(gaps, gap_refusals, 0, sizeof refusals / sizeof *refusals);
   tcase_add_loop_test(gaps, gap_limits, 0, sizeof limits / sizeof *limits);
   suite_add_tcase(suite, gaps);
+  TCase *suckers = tcase_create("suckers");
+  tcase_set_timeout(suckers, 60);
+  tcase_add_loop_test(suckers, suckers_add_their_rings, 0, BODIES);
+  tcase_add_test(suckers, suckers_are_round);
+  tcase_add_loop_test(suckers, sucker_refusals_name_the_limit, 0,
+                      sizeof sucker_refusals / sizeof *sucker_refusals);
+  suite_add_tcase(suite, suckers);
   return suite_run(suite);
 }
