@@ -5,6 +5,7 @@
 #include "solver/mesh/actuator.h"
 #include "solver/post/fit.h"
 #include "solver/post/result_internal.h"
+#include "solver/post/suction.h"
 
 static const double degree = M_PI / 180;
 
@@ -215,12 +216,23 @@ static bool fit_angle(const struct result *r, double from, double to, struct lin
   return good;
 }
 
+static void set_suction(json_t *metrics, const struct job_spec *spec) {
+  double force = 0;
+  for (int k = 0; k < spec->pneunet.sucker_count; k++) {
+    force += suction_force(spec, k);
+  }
+  if (spec->pneunet.sucker_count > 0) {
+    set_real(metrics, "suction_force_N", force);
+  }
+}
+
 static json_t *metrics_object(const struct result *r) {
   const struct metric_spec *m = &r->spec->metrics;
   const struct mesh *mesh = r->model->mesh;
   json_t *o = json_object();
   double whole = mesh->half ? 2 : 1;
   set_real(o, "mass_g", 1e3 * whole * r->model->reference_volume * r->spec->material.density_kg_m3);
+  set_suction(o, r->spec);
   if (r->sample_count == 0) {
     return o;
   }
@@ -311,6 +323,11 @@ json_t *result_document(struct result *r, enum status status, const struct error
   if (document) {
     json_object_set_new(document, "rest_midline_mm", centreline(r, NULL));
   }
+  json_t *suckers = suction_list(r->spec);
+  if (document && suckers) {
+    json_object_set(document, "suckers", suckers);
+  }
+  json_decref(suckers);
   if (document && json_array_size(r->arc) > 0) {
     json_object_set(document, "arc", r->arc);
   }
