@@ -12,9 +12,20 @@ const CAPTIONS = {
   angle: 'Bending angle against pressure',
   midline: 'Centreline at the recorded pressures',
   tip: 'Path of the tip',
+  midline3d: 'Centreline in three views',
+  tip3d: 'Path of the tip in three views',
+  measured: 'Simulation against measurement',
   surface: 'Deformed body, coloured by the largest stretch',
   convergence: 'Error against element size',
   curve: 'Computed values on the curve of the reference',
+  curves: 'Bending angle of every member against pressure',
+  metric: 'A metric of the members',
+  ranking: 'The best designs',
+  workspace: 'Positions of the tip in three views',
+  twist: 'Twist angle of every member against pressure',
+  contraction: 'Contraction of every member against pressure',
+  mesh: 'Convergence with the mesh',
+  suction: 'Suction and bending against the number of suckers',
 };
 
 const ACTIONS = [

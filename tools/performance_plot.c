@@ -113,7 +113,8 @@ static bool plot_unknowns(const json_t *scaling, const char *directory) {
                         .notice = "",
                         .x_label = "Unknowns",
                         .y_label = "CPU time (s)",
-                        .log_axes = true,
+                        .log_x = true,
+                        .log_y = true,
                         .series = c->series,
                         .series_count = c->count,
                         .empty = "Nothing was measured"};

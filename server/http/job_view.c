@@ -1,6 +1,7 @@
 #include "server/http/job_view.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "server/base/clock.h"
 #include "server/plot/plot.h"
@@ -31,8 +32,38 @@ static void link_set(json_t *links, const char *name, int64_t id, const char *re
   json_object_set_new(links, name, json_string(path));
 }
 
+/* The job's result document, a new reference; NULL when there is none or it cannot be read. */
+static json_t *result_read(const struct service *service, const struct job_record *record) {
+  char *text = NULL, *directory = NULL;
+  json_t *result = NULL;
+  if (record->has_result &&
+      store_result(service->store, record->id, &text, &directory, NULL) == STATUS_OK) {
+    result = json_loads(text, 0, NULL);
+  }
+  free(text);
+  free(directory);
+  return result;
+}
+
+/* Links to the plots: those that every job of this kind has, or those of this very result. */
+static json_t *plots_view(const struct job_record *record, const json_t *result) {
+  json_t *plots = json_array();
+  const char *own[PLOT_NAMES];
+  const char *const *names = plot_names(record->kind);
+  char path[200];
+  if (result) {
+    plot_names_for(record->kind, result, own);
+    names = own;
+  }
+  for (size_t i = 0; names[i]; i++) {
+    snprintf(path, sizeof path, "/api/v1/jobs/%lld/plots/%s.png", (long long)record->id, names[i]);
+    json_array_append_new(plots, json_string(path));
+  }
+  return plots;
+}
+
 /* Links to what the job has; those of a result only once there is one. */
-static json_t *links_view(const struct job_record *record) {
+static json_t *links_view(const struct job_record *record, const json_t *result) {
   json_t *links = json_object(), *plots = json_array(), *artifacts = json_array();
   char path[200];
   link_set(links, "self", record->id, "");
@@ -43,12 +74,8 @@ static json_t *links_view(const struct job_record *record) {
     link_set(links, "result", record->id, "/result");
     link_set(links, "metrics", record->id, "/metrics");
     link_set(links, "samples", record->id, "/samples.csv");
-    const char *const *names = plot_names(record->kind);
-    for (size_t i = 0; names[i]; i++) {
-      snprintf(path, sizeof path, "/api/v1/jobs/%lld/plots/%s.png", (long long)record->id,
-               names[i]);
-      json_array_append_new(plots, json_string(path));
-    }
+    json_decref(plots);
+    plots = plots_view(record, result);
   }
   for (size_t i = 0; i < json_array_size(record->artifacts); i++) {
     snprintf(path, sizeof path, "/api/v1/jobs/%lld/artifacts/%s", (long long)record->id,
@@ -60,7 +87,8 @@ static json_t *links_view(const struct job_record *record) {
   return links;
 }
 
-json_t *job_view(const struct service *service, const struct job_record *record) {
+json_t *job_view(const struct service *service, const struct job_record *record,
+                 const json_t *result) {
   json_t *view =
       json_pack("{s:I, s:s, s:s, s:s, s:s, s:s, s:O, s:o, s:I, s:s, s:o, s:o, s:o}", "id",
                 (json_int_t)record->id, "state", job_state_word(record->state), "reason_code",
@@ -76,7 +104,7 @@ json_t *job_view(const struct service *service, const struct job_record *record)
     json_object_set(view, "metrics", record->metrics);
   }
   if (view) {
-    json_object_set_new(view, "links", links_view(record));
+    json_object_set_new(view, "links", links_view(record, result));
   }
   return view;
 }
@@ -93,7 +121,9 @@ void job_view_reply(struct request *request, struct reply *reply, unsigned statu
     reply_error(reply, &error);
     return;
   }
-  reply_json(reply, status, job_view(request->service, &record));
+  json_t *result = result_read(request->service, &record);
+  reply_json(reply, status, job_view(request->service, &record, result));
+  json_decref(result);
   job_record_clear(&record);
   if (location) {
     location_set(reply, id);
@@ -108,8 +138,10 @@ static void job_waited(struct request *request, struct reply *reply) {
     return;
   }
   bool ended = job_state_terminal(record.state);
+  json_t *result = result_read(request->service, &record);
   reply_json(reply, ended || request->method == HTTP_GET ? 200 : 202,
-             job_view(request->service, &record));
+             job_view(request->service, &record, result));
+  json_decref(result);
   job_record_clear(&record);
   reply_header(reply, "Preference-Applied", "wait=%lld", (long long)request_wait_s(request));
   if (request->method == HTTP_POST) {

@@ -64,6 +64,7 @@ static void plot_reply(struct request *request, struct reply *reply, const char 
       drawings ? STATUS_OK : error_set(&error, STATUS_NO_MEMORY, NULL, "No memory for a picture.");
   for (size_t i = 0; i < count && status == STATUS_OK; i++) {
     status = drawing_read(request->service, ids[i], &drawings[i], &inputs[i], &error);
+    inputs[i].metric = url_query(&request->url, "metric");
   }
   if (status == STATUS_OK) {
     status = plot_render(plot, inputs, count, (int)width, (int)height, &png, &size, &error);
@@ -80,7 +81,7 @@ static void plot_reply(struct request *request, struct reply *reply, const char 
 }
 
 void plot_job(struct request *request, struct reply *reply) {
-  static const char *const known[] = {"width", "height", NULL};
+  static const char *const known[] = {"width", "height", "metric", NULL};
   int64_t id;
   if (request_id(request, reply, &id) && request_query_known(request, reply, known)) {
     plot_reply(request, reply, request->parameters[1], &id, 1);

@@ -33,6 +33,18 @@ static bool read_fit(const json_t *result, const struct point *points, size_t co
   return isfinite(fit->ends[0].y) && isfinite(fit->ends[1].y);
 }
 
+/* Error bars of a curve: the estimated error belongs to the last point of one that was finished.
+ * NULL when memory ran out. */
+static double *read_errors(const json_t *result, size_t count) {
+  double *errors = malloc((count + 1) * sizeof *errors);
+  for (size_t i = 0; errors && i < count; i++) {
+    bool last = i + 1 == count;
+    errors[i] =
+        last ? data_number(json_object_get(result, "metrics"), "bending_angle_deg_error") : NAN;
+  }
+  return errors;
+}
+
 enum status draw_angle(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                        struct error *error) {
   (void)count;
@@ -44,6 +56,11 @@ enum status draw_angle(struct canvas *canvas, const struct plot_input *inputs, s
   if (status != STATUS_OK) {
     return status;
   }
+  double *errors = read_errors(result, point_count);
+  if (!errors) {
+    free(points);
+    return error_set(error, STATUS_NO_MEMORY, NULL, "memory ran out for %zu points", point_count);
+  }
   char subtitle[DATA_HEADING], notice[DATA_HEADING], number[TICKS_TEXT], mark_text[80];
   data_subtitle(&inputs[0], subtitle);
   data_notice(result, notice);
@@ -54,6 +71,7 @@ enum status draw_angle(struct canvas *canvas, const struct plot_input *inputs, s
                                          .colour = colour_series(0),
                                          .width = 2.2,
                                          .marker = MARKER_CIRCLE,
+                                         .errors = errors,
                                          .name = "simulation"},
                                         {.points = fit.ends,
                                          .count = has_fit ? 2 : 0,
@@ -77,6 +95,7 @@ enum status draw_angle(struct canvas *canvas, const struct plot_input *inputs, s
                         .mark_text = mark_text,
                         .empty = "No samples were recorded"};
   chart_draw(&chart, canvas);
+  free(errors);
   free(points);
   return STATUS_OK;
 }

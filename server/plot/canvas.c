@@ -90,15 +90,20 @@ void canvas_text(struct canvas *canvas, double x, double y, double align_x, doub
   cairo_new_path(canvas->cr);
 }
 
-void canvas_text_upwards(struct canvas *canvas, double x, double y, const char *text,
-                         const struct text_style *style) {
+void canvas_text_turned(struct canvas *canvas, double x, double y, double angle, double align_x,
+                        double align_y, const char *text, const struct text_style *style) {
   cairo_save(canvas->cr);
   cairo_translate(canvas->cr, x, y);
-  cairo_rotate(canvas->cr, -G_PI / 2);
+  cairo_rotate(canvas->cr, angle);
   pango_cairo_update_layout(canvas->cr, canvas->layout);
-  canvas_text(canvas, 0, 0, 0.5, 0.5, text, style);
+  canvas_text(canvas, 0, 0, align_x, align_y, text, style);
   cairo_restore(canvas->cr);
   pango_cairo_update_layout(canvas->cr, canvas->layout);
+}
+
+void canvas_text_upwards(struct canvas *canvas, double x, double y, const char *text,
+                         const struct text_style *style) {
+  canvas_text_turned(canvas, x, y, -G_PI / 2, 0.5, 0.5, text, style);
 }
 
 void canvas_set_colour(struct canvas *canvas, struct colour colour) {

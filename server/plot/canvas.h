@@ -45,6 +45,10 @@ void canvas_measure(struct canvas *canvas, const char *text, const struct text_s
 void canvas_text(struct canvas *canvas, double x, double y, double align_x, double align_y,
                  const char *text, const struct text_style *style);
 
+/* Like canvas_text for text turned about (x, y) by an angle in radians, clockwise. */
+void canvas_text_turned(struct canvas *canvas, double x, double y, double angle, double align_x,
+                        double align_y, const char *text, const struct text_style *style);
+
 /* Like canvas_text for text that runs upwards, centred about (x, y). */
 void canvas_text_upwards(struct canvas *canvas, double x, double y, const char *text,
                          const struct text_style *style);

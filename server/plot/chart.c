@@ -3,9 +3,11 @@
 #include <math.h>
 #include <string.h>
 
+#include "server/plot/axes.h"
 #include "server/plot/legend.h"
+#include "server/plot/series.h"
 
-enum { MARGIN = 16, TICK = 4 }; /* design units: edge of the sheet, tick mark */
+enum { MARGIN = 16 }; /* design units: edge of the sheet */
 
 struct text_style chart_style_label(void) {
   return (struct text_style){.size = 14, .colour = colour_ink};
@@ -13,12 +15,6 @@ struct text_style chart_style_label(void) {
 
 struct text_style chart_style_tick(void) {
   return (struct text_style){.size = 12, .colour = colour_muted};
-}
-
-/* Number of ticks that suits a length in pixels. */
-static int tick_target(const struct canvas *canvas, double length, double spacing) {
-  int target = (int)(length / (spacing * canvas->unit));
-  return target < 2 ? 2 : target > 12 ? 12 : target;
 }
 
 enum { TITLE_HEIGHT = 24, SUBTITLE_HEIGHT = 17 };
@@ -46,25 +42,11 @@ double chart_heading_height(const struct canvas *canvas, const char *subtitle, c
   return (MARGIN + TITLE_HEIGHT + SUBTITLE_HEIGHT * lines + 8) * canvas->unit;
 }
 
-/* Widest tick text of an axis. */
-static double widest_tick(struct canvas *canvas, const struct ticks *ticks) {
-  double widest = 0;
-  struct text_style style = chart_style_tick();
-  for (int i = 0; i < ticks->count; i++) {
-    char text[TICKS_TEXT];
-    double width, height;
-    ticks_label(ticks, i, text);
-    canvas_measure(canvas, text, &style, &width, &height);
-    widest = fmax(widest, width);
-  }
-  return widest;
-}
-
 enum { BAR_GAP = 18, BAR_WIDTH = 16, BAR_TEXT = 7, BAR_LABEL = 24 };
 
 static struct ticks bar_ticks(const struct canvas *canvas, const struct colour_bar *bar,
                               double height) {
-  return ticks_make(bar->min, bar->max, tick_target(canvas, height, 56));
+  return ticks_make(bar->min, bar->max, axes_tick_target(canvas, height, 56));
 }
 
 double chart_bar_room(struct canvas *canvas, const struct colour_bar *bar) {
@@ -72,7 +54,8 @@ double chart_bar_room(struct canvas *canvas, const struct colour_bar *bar) {
     return 0;
   }
   struct ticks ticks = bar_ticks(canvas, bar, canvas->height * 0.7);
-  return widest_tick(canvas, &ticks) + (BAR_GAP + BAR_WIDTH + BAR_TEXT + BAR_LABEL) * canvas->unit;
+  return axes_widest_tick(canvas, &ticks) +
+         (BAR_GAP + BAR_WIDTH + BAR_TEXT + BAR_LABEL) * canvas->unit;
 }
 
 void chart_bar(struct canvas *canvas, const struct colour_bar *bar, struct box area) {
@@ -101,26 +84,43 @@ void chart_bar(struct canvas *canvas, const struct colour_bar *bar, struct box a
                       &label);
 }
 
+/* Widens a range by one series, error bars and bands included. */
+static void add_range(const struct chart_series *series, struct frame *frame) {
+  double half = series->style == STYLE_COLUMNS ? series->width / 2 : 0;
+  for (size_t i = 0; i < series->count; i++) {
+    struct point p = series->points[i];
+    double reach = series->errors && series->errors[i] > 0 ? series->errors[i] : 0;
+    reach = series->band ? fmax(reach, series->band[i]) : reach;
+    frame->x_min = fmin(frame->x_min, p.x - half);
+    frame->x_max = fmax(frame->x_max, p.x + half);
+    frame->y_min = fmin(frame->y_min, p.y - reach);
+    frame->y_max = fmax(frame->y_max, p.y + reach);
+    if (series->style == STYLE_COLUMNS || series->style == STYLE_STEMS) {
+      frame->y_min = fmin(frame->y_min, 0.0);
+      frame->y_max = fmax(frame->y_max, 0.0);
+    }
+  }
+}
+
+/* Range of all points; returns their number. */
 static size_t data_range(const struct chart *chart, struct frame *frame) {
   size_t count = 0;
   frame->x_min = frame->y_min = chart->from_zero ? 0.0 : INFINITY;
   frame->x_max = frame->y_max = chart->from_zero ? 0.0 : -INFINITY;
   for (size_t s = 0; s < chart->series_count; s++) {
-    if (chart->series[s].guide) {
-      continue;
+    if (!chart->series[s].guide) {
+      add_range(&chart->series[s], frame);
+      count += chart->series[s].count;
     }
-    for (size_t i = 0; i < chart->series[s].count; i++) {
-      struct point p = chart->series[s].points[i];
-      frame->x_min = fmin(frame->x_min, p.x);
-      frame->x_max = fmax(frame->x_max, p.x);
-      frame->y_min = fmin(frame->y_min, p.y);
-      frame->y_max = fmax(frame->y_max, p.y);
-    }
-    count += chart->series[s].count;
   }
   if (chart->mark && count > 0) {
     frame->x_min = fmin(frame->x_min, chart->mark->x);
     frame->x_max = fmax(frame->x_max, chart->mark->x);
+  }
+  if (chart->loose_x) {
+    double spare = 0.04 * (frame->x_max - frame->x_min);
+    frame->x_min -= spare;
+    frame->x_max += spare;
   }
   if (count == 0) {
     frame->x_min = frame->y_min = 0.0;
@@ -144,101 +144,66 @@ static void equalise(struct frame *frame) {
   frame->y_max += spare_y;
 }
 
-static struct ticks axis_ticks(const struct chart *chart, double min, double max, int target) {
-  return chart->log_axes ? ticks_make_log(min, max, target) : ticks_make(min, max, target);
+/* A chart on its way to the sheet. */
+struct panel {
+  const struct chart *chart;
+  struct axes axes;
+  struct box sheet;  /* all that the chart may use */
+  double left;       /* pixels: least room left of the axis */
+  struct frame data; /* range of the points */
+  size_t points;
+  struct frame frame;
+};
+
+static struct panel panel_make(const struct chart *chart) {
+  struct panel panel = {.chart = chart,
+                        .axes = {.x_label = chart->x_label,
+                                 .y_label = chart->y_label,
+                                 .log_x = chart->log_x,
+                                 .log_y = chart->log_y,
+                                 .whole_x = chart->whole_x,
+                                 .x_names = chart->x_names,
+                                 .x_name_count = chart->x_name_count}};
+  panel.points = data_range(chart, &panel.data);
+  return panel;
 }
 
-/* Finds the inside of the axes below `top`, and with it the final ranges. */
-static void lay_out(const struct chart *chart, struct canvas *canvas, double top,
-                    const struct frame *data, struct frame *frame) {
+/* Finds the inside of the axes from `top` downwards, and with it the final ranges. */
+static void lay_out(struct panel *panel, struct canvas *canvas, double top) {
   double u = canvas->unit;
-  *frame = *data;
-  double bottom = canvas->height - 60 * u;
-  frame->area = (struct box){74 * u, top, 0, bottom - top};
-  double right = canvas->width - 26 * u;
-  if (chart->bar.label) {
-    right = canvas->width - 8 * u - chart_bar_room(canvas, &chart->bar);
-  }
+  const struct chart *chart = panel->chart;
+  struct frame *frame = &panel->frame;
+  double right = panel->sheet.x + panel->sheet.width;
+  right -= chart->bar.label ? 8 * u + chart_bar_room(canvas, &chart->bar) : 26 * u;
+  struct box area = {panel->sheet.x + 74 * u, top, 0, 0};
   /* the width of the tick texts depends on the ranges, which depend on the width: twice is enough
    */
   for (int pass = 0; pass < 2; pass++) {
-    frame->area.width = right - frame->area.x;
-    struct box area = frame->area;
-    *frame = *data;
+    area.width = right - area.x;
+    double bottom = panel->sheet.y + panel->sheet.height;
+    area.height = fmax(bottom - axes_bottom_room(canvas, &panel->axes, area.width) - top, 20 * u);
+    *frame = panel->data;
     frame->area = area;
     if (chart->equal) {
       equalise(frame);
     } else {
-      void (*widen)(double *, double *, int) = chart->log_axes ? ticks_widen_log : ticks_widen;
-      widen(&frame->x_min, &frame->x_max, tick_target(canvas, area.width, 90));
-      widen(&frame->y_min, &frame->y_max, tick_target(canvas, area.height, 60));
+      axes_widen(canvas, &panel->axes, frame);
     }
-    struct ticks ticks =
-        axis_ticks(chart, frame->y_min, frame->y_max, tick_target(canvas, area.height, 60));
-    frame->area.x = round((MARGIN + 32) * u + widest_tick(canvas, &ticks));
-    frame->area.width = right - frame->area.x;
+    double left = fmax(axes_left_room(canvas, &panel->axes, frame), panel->left);
+    area.x = round(panel->sheet.x + left);
   }
-}
-
-static void draw_axes(const struct chart *chart, struct canvas *canvas, const struct frame *frame,
-                      bool empty) {
-  double u = canvas->unit;
-  const struct box *a = &frame->area;
-  double bottom = a->y + a->height, right = a->x + a->width;
-  int x_target = tick_target(canvas, a->width, 90), y_target = tick_target(canvas, a->height, 60);
-  struct ticks xs = axis_ticks(chart, frame->x_min, frame->x_max, x_target);
-  struct ticks ys = axis_ticks(chart, frame->y_min, frame->y_max, y_target);
-  struct text_style tick = chart_style_tick(), label = chart_style_label();
-  if (empty) {
-    xs.count = ys.count = 0; /* numbers would claim a range that nothing was measured in */
-  }
-  char text[TICKS_TEXT];
-  for (int i = 0; i < xs.count; i++) {
-    double x = frame_pixel(frame, (struct point){ticks_value(&xs, i), frame->y_min}).x;
-    canvas_set_colour(canvas, colour_grid);
-    canvas_line(canvas, x, a->y, x, bottom, 1);
-    canvas_set_colour(canvas, colour_muted);
-    canvas_line(canvas, x, bottom, x, bottom + TICK * u, 1);
-    ticks_label(&xs, i, text);
-    canvas_text(canvas, x, bottom + (TICK + 4) * u, 0.5, 0, text, &tick);
-  }
-  for (int i = 0; i < ys.count; i++) {
-    double y = frame_pixel(frame, (struct point){frame->x_min, ticks_value(&ys, i)}).y;
-    canvas_set_colour(canvas, colour_grid);
-    canvas_line(canvas, a->x, y, right, y, 1);
-    canvas_set_colour(canvas, colour_muted);
-    canvas_line(canvas, a->x - TICK * u, y, a->x, y, 1);
-    ticks_label(&ys, i, text);
-    canvas_text(canvas, a->x - (TICK + 5) * u, y, 1, 0.5, text, &tick);
-  }
-  canvas_set_colour(canvas, colour_muted);
-  canvas_line(canvas, a->x, a->y, a->x, bottom, 1);
-  canvas_line(canvas, a->x, bottom, right, bottom, 1);
-  label.max_width = a->width;
-  canvas_text(canvas, a->x + a->width / 2, canvas->height - MARGIN * u, 0.5, 1, chart->x_label,
-              &label);
-  label.max_width = a->height;
-  canvas_text_upwards(canvas, MARGIN * u + 6 * u, a->y + a->height / 2, chart->y_label, &label);
+  frame->area.x = area.x;
+  frame->area.width = right - area.x;
 }
 
 /* Notes every curve and marker as an obstacle. */
-static void add_obstacles(const struct chart *chart, const struct canvas *canvas,
-                          const struct frame *frame, struct place *place) {
-  double r = 5 * canvas->unit;
+static void add_obstacles(const struct panel *panel, const struct canvas *canvas,
+                          struct place *place) {
+  const struct chart *chart = panel->chart;
+  const struct frame *frame = &panel->frame;
   place->bounds = frame->area;
   for (size_t s = 0; s < chart->series_count; s++) {
-    const struct chart_series *series = &chart->series[s];
-    struct point before = {0};
-    for (size_t i = 0; i < series->count; i++) {
-      struct point p = frame_pixel(frame, series->points[i]);
-      if (series->marker != MARKER_NONE) {
-        place_add_box(place, (struct box){p.x - r, p.y - r, 2 * r, 2 * r});
-      }
-      if (i > 0 && series->width > 0) {
-        place_add_segment(place, (struct place_segment){before.x, before.y, p.x, p.y});
-      }
-      before = p;
-    }
+    series_add_obstacles(canvas, frame, &chart->series[s], place);
   }
   if (chart->mark) {
     double x = frame_pixel(frame, *chart->mark).x;
@@ -307,32 +272,45 @@ static void draw_empty(const struct chart *chart, struct canvas *canvas, const s
   canvas_text(canvas, x, y, 0.5, 0.5, chart->empty, &style);
 }
 
-static void draw_curves(const struct chart *chart, struct canvas *canvas, const struct frame *frame,
-                        bool guides) {
+static void draw_curves(const struct panel *panel, struct canvas *canvas, bool guides) {
+  const struct box *area = &panel->frame.area;
   cairo_save(canvas->cr);
   if (guides) {
-    cairo_rectangle(canvas->cr, frame->area.x, frame->area.y, frame->area.width,
-                    frame->area.height);
+    cairo_rectangle(canvas->cr, area->x, area->y, area->width, area->height);
     cairo_clip(canvas->cr);
   }
-  for (size_t i = 0; i < chart->series_count; i++) {
-    if (chart->series[i].guide == guides) {
-      legend_draw_series(canvas, frame, &chart->series[i]);
+  for (size_t i = 0; i < panel->chart->series_count; i++) {
+    const struct chart_series *series = &panel->chart->series[i];
+    if (series->guide == guides && series->style != STYLE_SPAN) {
+      series_draw(canvas, &panel->frame, series);
+    }
+  }
+  cairo_restore(canvas->cr);
+}
+
+/* Fills the spans, which lie below the grid. */
+static void draw_spans(const struct panel *panel, struct canvas *canvas) {
+  const struct box *area = &panel->frame.area;
+  cairo_save(canvas->cr);
+  cairo_rectangle(canvas->cr, area->x, area->y, area->width, area->height);
+  cairo_clip(canvas->cr);
+  for (size_t i = 0; i < panel->chart->series_count; i++) {
+    if (panel->chart->series[i].style == STYLE_SPAN) {
+      series_draw(canvas, &panel->frame, &panel->chart->series[i]);
     }
   }
   cairo_restore(canvas->cr);
 }
 
 /* Lays out the chart so that the legend is inside where nothing is, or else in a band above. */
-static struct legend lay_out_with_legend(const struct chart *chart, struct canvas *canvas,
-                                         double top, struct frame *frame) {
-  struct frame data = *frame;
+static struct legend lay_out_with_legend(struct panel *panel, struct canvas *canvas) {
+  const struct chart *chart = panel->chart;
   struct place place = {0};
-  double margin = 6 * canvas->unit;
-  lay_out(chart, canvas, top, &data, frame);
-  struct legend legend =
-      legend_measure(canvas, chart, 1, 0.62 * frame->area.width, 0.6 * frame->area.height);
-  add_obstacles(chart, canvas, frame, &place);
+  double top = panel->sheet.y, margin = 6 * canvas->unit;
+  const struct box *area = &panel->frame.area;
+  lay_out(panel, canvas, top);
+  struct legend legend = legend_measure(canvas, chart, 1, 0.62 * area->width, 0.6 * area->height);
+  add_obstacles(panel, canvas, &place);
   bool complete = legend.shown == legend.rows;
   bool inside =
       legend.rows == 0 ||
@@ -340,40 +318,77 @@ static struct legend lay_out_with_legend(const struct chart *chart, struct canva
   place_release(&place);
   if (!inside) {
     size_t columns = chart->series_count > 4 ? 2 : 1;
-    legend = legend_measure(canvas, chart, columns, frame->area.width, 0.45 * frame->area.height);
-    lay_out(chart, canvas, top + legend.box.height, &data, frame);
-    legend.box.x = frame->area.x;
+    legend = legend_measure(canvas, chart, columns, area->width, 0.45 * area->height);
+    lay_out(panel, canvas, top + legend.box.height);
+    legend.box.x = area->x;
     legend.box.y = top - 4 * canvas->unit;
   }
   return legend;
 }
 
-void chart_draw(const struct chart *chart, struct canvas *canvas) {
+static void draw_panel(struct panel *panel, struct canvas *canvas) {
+  const struct chart *chart = panel->chart;
+  const struct frame *frame = &panel->frame;
   struct place place = {0};
-  struct frame frame = {0};
-  double top = chart_heading_height(canvas, chart->subtitle, chart->notice);
-  size_t points = data_range(chart, &frame);
-  struct legend legend = lay_out_with_legend(chart, canvas, top, &frame);
-  chart_heading(canvas, frame.area.x, chart->title, chart->subtitle, chart->notice);
-  draw_axes(chart, canvas, &frame, points == 0);
-  if (points == 0) {
-    draw_empty(chart, canvas, &frame.area);
+  struct legend legend = lay_out_with_legend(panel, canvas);
+  draw_spans(panel, canvas);
+  axes_draw(canvas, &panel->axes, frame, panel->points == 0);
+  if (panel->points == 0) {
+    draw_empty(chart, canvas, &frame->area);
   }
-  add_obstacles(chart, canvas, &frame, &place);
+  add_obstacles(panel, canvas, &place);
   if (legend.rows > 0) {
     legend_draw(canvas, chart, &legend);
     place_add_box(&place, legend.box);
   }
-  if (chart->mark && points > 0) {
-    draw_mark(chart, canvas, &frame, &place);
+  if (chart->mark && panel->points > 0) {
+    draw_mark(chart, canvas, frame, &place);
   }
-  draw_curves(chart, canvas, &frame, true);
-  draw_curves(chart, canvas, &frame, false);
-  draw_labels(chart, canvas, &frame, &place);
+  draw_curves(panel, canvas, true);
+  draw_curves(panel, canvas, false);
+  draw_labels(chart, canvas, frame, &place);
   if (chart->bar.label) {
-    double right = frame.area.x + frame.area.width + chart_bar_room(canvas, &chart->bar);
-    chart_bar(canvas, &chart->bar,
-              (struct box){frame.area.x, frame.area.y, right - frame.area.x, frame.area.height});
+    double right = frame->area.x + frame->area.width + chart_bar_room(canvas, &chart->bar);
+    chart_bar(
+        canvas, &chart->bar,
+        (struct box){frame->area.x, frame->area.y, right - frame->area.x, frame->area.height});
   }
   place_release(&place);
+}
+
+void chart_draw(const struct chart *chart, struct canvas *canvas) {
+  struct panel panel = panel_make(chart);
+  double top = chart_heading_height(canvas, chart->subtitle, chart->notice);
+  panel.sheet = (struct box){0, top, canvas->width, canvas->height - top};
+  draw_panel(&panel, canvas);
+  chart_heading(canvas, panel.frame.area.x, chart->title, chart->subtitle, chart->notice);
+}
+
+void chart_draw_stack(const struct chart *charts, const double *shares, size_t count,
+                      struct canvas *canvas) {
+  struct panel panels[CHART_STACK];
+  double top = chart_heading_height(canvas, charts->subtitle, charts->notice);
+  double y = top, from = INFINITY, to = -INFINITY, left = 0;
+  /* the last has the numbers and the label besides */
+  double extra = 46 * canvas->unit, height = canvas->height - top - extra;
+  for (size_t i = 0; i < count; i++) {
+    panels[i] = panel_make(&charts[i]);
+    panels[i].axes.no_x_text = i + 1 < count;
+    double own = shares[i] * height + (i + 1 < count ? 0 : extra);
+    panels[i].sheet = (struct box){0, y, canvas->width, own};
+    y += own;
+    from = panels[i].points > 0 ? fmin(from, panels[i].data.x_min) : from;
+    to = panels[i].points > 0 ? fmax(to, panels[i].data.x_max) : to;
+  }
+  for (size_t i = 0; i < count; i++) {
+    panels[i].data.x_min = from <= to ? from : 0;
+    panels[i].data.x_max = from <= to ? to : 1;
+    lay_out(&panels[i], canvas, panels[i].sheet.y);
+    left = fmax(left, panels[i].frame.area.x);
+  }
+  for (size_t i = 0; i < count; i++) {
+    panels[i].left = left;
+    draw_panel(&panels[i], canvas);
+  }
+  chart_heading(canvas, left, charts->title, charts->subtitle, charts->notice);
 }

@@ -99,7 +99,8 @@ enum status draw_convergence(struct canvas *canvas, const struct plot_input *inp
                         .notice = notice,
                         .x_label = x_label,
                         .y_label = "Error (%)",
-                        .log_axes = true,
+                        .log_x = true,
+                        .log_y = true,
                         .series = series,
                         .series_count = sizeof series / sizeof *series,
                         .empty = "No mesh was solved"};

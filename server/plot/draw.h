@@ -26,6 +26,41 @@ enum status draw_convergence(struct canvas *canvas, const struct plot_input *inp
 /* The computed points of a verify job on the curve of their references. */
 enum status draw_curve(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                        struct error *error);
+/* Simulated and measured bending angles, and below them what they differ by. */
+enum status draw_measured(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                          struct error *error);
+/* The centreline in three views at every recorded pressure. */
+enum status draw_midline3d(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                           struct error *error);
+/* The way of the tip in three views. */
+enum status draw_tip3d(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                       struct error *error);
+
+/* Bending angle against pressure of the members of a study, with sensitivities and R². */
+enum status draw_curves(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                        struct error *error);
+/* Contraction of the reach against pressure of the members of a study. */
+enum status draw_contraction(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                             struct error *error);
+/* Twist angle against pressure of the members of a study. */
+enum status draw_twist(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                       struct error *error);
+/* One metric of the members against the parameter that varies, with published values. */
+enum status draw_metric(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                        struct error *error);
+/* The best designs of a ranked study and what their scores are made of. */
+enum status draw_ranking(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                         struct error *error);
+/* Positions of the tips of all members in three views, coloured by the row pressures. */
+enum status draw_workspace(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                           struct error *error);
+/* A metric against the number of unknowns of members that differ in their mesh. */
+enum status draw_mesh(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                      struct error *error);
+/* Suction force and bending angle against the number of suckers. */
+enum status draw_suction(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                         struct error *error);
+
 /* Bending angle against pressure of several jobs. */
 enum status draw_overlay(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                          struct error *error);

@@ -1,15 +1,8 @@
-/* Curves of a chart and the box that names them. */
+/* The box that names the curves of a chart. */
 #ifndef PNEULAB_PLOT_LEGEND_H
 #define PNEULAB_PLOT_LEGEND_H
 
 #include "server/plot/chart.h"
-
-/* Where a point of the chart is on the sheet. */
-struct point frame_pixel(const struct frame *frame, struct point p);
-
-/* Draws one curve, clipped to nothing: its points are inside the frame by construction. */
-void legend_draw_series(struct canvas *canvas, const struct frame *frame,
-                        const struct chart_series *series);
 
 /* A legend that has been laid out; everything 0 when no series has a name and a point. */
 struct legend {

@@ -1,8 +1,11 @@
 #include "server/plot/plot.h"
 
+#include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "server/plot/draw.h"
+#include "server/plot/offer.h"
 
 enum { SIDE_MIN = 200, SIDE_MAX = 4000 };
 
@@ -10,33 +13,84 @@ typedef enum status draw_function(struct canvas *, const struct plot_input *, si
                                   struct error *);
 
 struct entry {
-  const char *name;
+  const char *name, *kind; /* kind NULL: of several jobs */
   draw_function *draw;
+  offer_function *offer; /* NULL: any result of the kind has this plot */
 };
 
 static const struct entry entries[] = {
-    {"angle", draw_angle},     {"midline", draw_midline}, {"tip", draw_tip},
-    {"surface", draw_surface}, {"overlay", draw_overlay}, {"convergence", draw_convergence},
-    {"curve", draw_curve},
+    {"angle", "response", draw_angle, NULL},
+    {"midline", "response", draw_midline, NULL},
+    {"tip", "response", draw_tip, NULL},
+    {"midline3d", "response", draw_midline3d, offer_spatial},
+    {"tip3d", "response", draw_tip3d, offer_spatial},
+    {"measured", "response", draw_measured, offer_measured},
+    {"surface", "response", draw_surface, NULL},
+    {"convergence", "verify", draw_convergence, NULL},
+    {"curve", "verify", draw_curve, NULL},
+    {"curves", "study", draw_curves, NULL},
+    {"metric", "study", draw_metric, offer_metric},
+    {"ranking", "study", draw_ranking, offer_ranking},
+    {"workspace", "study", draw_workspace, offer_workspace},
+    {"twist", "study", draw_twist, offer_twist},
+    {"contraction", "study", draw_contraction, offer_contraction},
+    {"mesh", "study", draw_mesh, offer_mesh},
+    {"suction", "study", draw_suction, offer_suction},
+    {"overlay", NULL, draw_overlay, NULL},
 };
+
+enum { ENTRIES = sizeof entries / sizeof *entries };
 
 const char *const *plot_names(const char *kind) {
   static const char *const response[] = {"angle", "midline", "tip", "surface", NULL};
   static const char *const verify[] = {"convergence", "curve", NULL};
+  static const char *const study[] = {"curves", NULL};
   static const char *const none[] = {NULL};
   return !kind                           ? none
          : strcmp(kind, "response") == 0 ? response
          : strcmp(kind, "verify") == 0   ? verify
+         : strcmp(kind, "study") == 0    ? study
                                          : none;
 }
 
-static draw_function *find(const char *plot) {
-  for (size_t i = 0; i < sizeof entries / sizeof *entries; i++) {
-    if (strcmp(entries[i].name, plot) == 0) {
-      return entries[i].draw;
+void plot_names_for(const char *kind, const json_t *result, const char *names[PLOT_NAMES]) {
+  static const char *const planar[] = {"midline", "tip"};
+  const struct plot_input input = {.result = result};
+  bool spatial = offer_spatial(&input) == NULL;
+  size_t count = 0;
+  for (size_t i = 0; i < ENTRIES; i++) {
+    const struct entry *entry = &entries[i];
+    bool replaced =
+        spatial && (strcmp(entry->name, planar[0]) == 0 || strcmp(entry->name, planar[1]) == 0);
+    if (kind && entry->kind && strcmp(entry->kind, kind) == 0 && !replaced &&
+        (!entry->offer || !entry->offer(&input)) && count + 1 < PLOT_NAMES) {
+      names[count++] = entry->name;
     }
   }
-  return NULL;
+  names[count] = NULL;
+}
+
+/* Finds a plot and whether this result has it. */
+static enum status find(const char *plot, const struct plot_input *input,
+                        const struct entry **found, struct error *error) {
+  const char *kind = json_string_value(json_object_get(input->result, "kind"));
+  char known[200] = "";
+  for (size_t i = 0; i < ENTRIES; i++) {
+    const struct entry *entry = &entries[i];
+    size_t used = strlen(known);
+    if (!kind || !entry->kind || strcmp(entry->kind, kind) == 0) {
+      snprintf(known + used, sizeof known - used, "%s%s", used ? ", " : "", entry->name);
+      if (strcmp(entry->name, plot) == 0) {
+        const char *reason = entry->offer ? entry->offer(input) : NULL;
+        *found = entry;
+        return reason ? error_set(error, STATUS_NOT_FOUND, NULL, "there is no plot \"%s\" here: %s",
+                                  entry->name, reason)
+                      : STATUS_OK;
+      }
+    }
+  }
+  return error_set(error, STATUS_NOT_FOUND, NULL,
+                   "there is no plot \"%.40s\" of this kind of job; there may be: %s", plot, known);
 }
 
 /* The file itself says where it comes from; an overlay has no single job to name. */
@@ -59,18 +113,15 @@ static enum status encode(struct canvas *canvas, const struct plot_input *inputs
 
 enum status plot_render(const char *plot, const struct plot_input *inputs, size_t count, int width,
                         int height, unsigned char **png, size_t *size, struct error *error) {
-  draw_function *draw = find(plot);
-  if (!draw) {
-    return error_set(
-        error, STATUS_NOT_FOUND, NULL,
-        "there is no plot \"%.40s\"; a response has angle, midline, tip and surface, a "
-        "verification convergence and curve",
-        plot);
-  }
+  const struct entry *entry = NULL;
   if (count == 0 || count > DRAW_OVERLAY_LIMIT) {
     return error_set(error, STATUS_INVALID, NULL,
                      "%zu jobs cannot be drawn together; 1 to %d can, as in ?jobs=1,2", count,
                      DRAW_OVERLAY_LIMIT);
+  }
+  enum status status = find(plot, inputs, &entry, error);
+  if (status != STATUS_OK) {
+    return status;
   }
   if (width < SIDE_MIN || width > SIDE_MAX || height < SIDE_MIN || height > SIDE_MAX) {
     return error_set(error, STATUS_INVALID, NULL,
@@ -83,7 +134,7 @@ enum status plot_render(const char *plot, const struct plot_input *inputs, size_
     return error_set(error, STATUS_NO_MEMORY, NULL, "memory ran out for a picture of %d x %d",
                      width, height);
   }
-  enum status status = draw(canvas, inputs, count, error);
+  status = entry->draw(canvas, inputs, count, error);
   if (status == STATUS_OK) {
     status = encode(canvas, inputs, count, png, size, error);
   }

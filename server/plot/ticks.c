@@ -122,10 +122,16 @@ static void true_minus(const char *plain, char text[TICKS_TEXT]) {
   text[out] = '\0';
 }
 
+/* Whether all ticks of a logarithmic scale are short enough to be written out. */
+static bool written_out(const struct ticks *ticks) {
+  double low = ticks_value(ticks, 0), high = ticks_value(ticks, ticks->count - 1);
+  return ticks->scale == TICKS_125 && low > -3.5 && high < 5.5;
+}
+
 void ticks_label(const struct ticks *ticks, int i, char text[TICKS_TEXT]) {
   double value = ticks_value(ticks, i);
   char plain[TICKS_TEXT];
-  if (ticks->scale != TICKS_LINEAR && (fabs(value) > 3.5 || ticks->scale == TICKS_DECADES)) {
+  if (ticks->scale != TICKS_LINEAR && !written_out(ticks)) {
     double exponent = floor(value + 1e-6), digit = round(pow(10, value - exponent));
     power_label((int)exponent, text);
     if (digit > 1) {
@@ -133,6 +139,11 @@ void ticks_label(const struct ticks *ticks, int i, char text[TICKS_TEXT]) {
       memcpy(power, text, sizeof power);
       snprintf(text, TICKS_TEXT, "%d\u00b7%.22s", (int)digit, power);
     }
+    return;
+  }
+  if (ticks->scale == TICKS_125 && value > 3.9) {
+    /* thousands apart by a narrow space */
+    snprintf(text, TICKS_TEXT, "%.0f\u202f000", pow(10, value - 3));
     return;
   }
   if (ticks->scale == TICKS_125) {

@@ -1,8 +1,6 @@
-/* Plots: every picture is decoded again and its points looked up, so that what is asserted is what
- * a reader sees. With PLOT_TEST_DIR set, the pictures are left there to look at. */
+/* Plots of one job and of several. */
 #include <check.h>
 #include <math.h>
-#include <png.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,108 +8,13 @@
 #include <unistd.h>
 
 #include "server/plot/plot.h"
+#include "tests/unit/plot_pictures.h"
 #include "tests/unit/plot_samples.h"
 
 #define LONG_NAME                                                                                            \
   "Überlänge 气动 πνεῦμα: a name that goes on and on, as names do when nobody stops them, until " \
   "it has two hundred characters and more, which no subtitle can show without cutting it "                   \
   "somewhere near the end"
-
-/* Fontconfig keeps its tables until the process ends and hides them from the leak checker. */
-const char *__lsan_default_suppressions(void);
-const char *__lsan_default_suppressions(void) {
-  return "leak:libfontconfig\nleak:libpango\n";
-}
-
-/* The thread checker does not see the locks inside libraries that were built without it. */
-const char *__tsan_default_suppressions(void);
-const char *__tsan_default_suppressions(void) {
-  return "called_from_lib:libfontconfig.so\ncalled_from_lib:libglib-2.0.so\n"
-         "called_from_lib:libgobject-2.0.so\ncalled_from_lib:libcairo.so\n"
-         "called_from_lib:libpango-1.0.so\ncalled_from_lib:libpangocairo-1.0.so\n"
-         "called_from_lib:libpangoft2-1.0.so\ncalled_from_lib:libharfbuzz.so\n"
-         "called_from_lib:libfreetype.so\ncalled_from_lib:libpixman-1.so\n"
-         "called_from_lib:libfribidi.so\ncalled_from_lib:libexpat.so\n";
-}
-
-struct picture {
-  png_image image;
-  unsigned char *rgb;
-};
-
-static void keep(const char *name, const unsigned char *png, size_t size) {
-  const char *directory = getenv("PLOT_TEST_DIR");
-  char path[512];
-  if (directory && name) {
-    snprintf(path, sizeof path, "%s/%s.png", directory, name);
-    FILE *file = fopen(path, "wb");
-    ck_assert_ptr_nonnull(file);
-    ck_assert_uint_eq(fwrite(png, 1, size, file), size);
-    fclose(file);
-  }
-}
-
-static struct picture decode(const unsigned char *png, size_t size) {
-  struct picture picture = {.image = {.version = PNG_IMAGE_VERSION}};
-  ck_assert_int_ne(png_image_begin_read_from_memory(&picture.image, png, size), 0);
-  picture.image.format = PNG_FORMAT_RGB;
-  picture.rgb = malloc(PNG_IMAGE_SIZE(picture.image));
-  ck_assert_int_ne(png_image_finish_read(&picture.image, NULL, picture.rgb, 0, NULL), 0);
-  return picture;
-}
-
-/* Draws, decodes and keeps a picture; fails the test when it cannot be drawn. */
-static struct picture render(const char *plot, const struct plot_input *inputs, size_t count,
-                             int width, int height, const char *name) {
-  unsigned char *png = NULL;
-  size_t size = 0;
-  struct error error = {0};
-  enum status status = plot_render(plot, inputs, count, width, height, &png, &size, &error);
-  ck_assert_msg(status == STATUS_OK, "%s: %s", plot, error.message);
-  keep(name, png, size);
-  struct picture picture = decode(png, size);
-  ck_assert_int_eq((int)picture.image.width, width);
-  ck_assert_int_eq((int)picture.image.height, height);
-  free(png);
-  return picture;
-}
-
-static enum status refuse(const char *plot, const struct plot_input *inputs, size_t count,
-                          int width, int height) {
-  unsigned char *png = NULL;
-  size_t size = 0;
-  struct error error = {0};
-  enum status status = plot_render(plot, inputs, count, width, height, &png, &size, &error);
-  ck_assert_ptr_null(png);
-  ck_assert_int_eq(error.status, status);
-  ck_assert_uint_gt(strlen(error.message), 10);
-  return status;
-}
-
-/* Pixels within a small distance of a colour. */
-static size_t count_colour(const struct picture *picture, int r, int g, int b) {
-  size_t count = 0;
-  for (size_t i = 0; i < (size_t)picture->image.width * picture->image.height; i++) {
-    const unsigned char *p = picture->rgb + 3 * i;
-    count += abs(p[0] - r) < 12 && abs(p[1] - g) < 12 && abs(p[2] - b) < 12;
-  }
-  return count;
-}
-
-/* Mean y of the pixels of a colour in columns from <= x < to; NaN when there are none. */
-static double mean_y(const struct picture *picture, int from, int to, int r, int g, int b) {
-  double sum = 0, count = 0;
-  for (int y = 0; y < (int)picture->image.height; y++) {
-    for (int x = from; x < to; x++) {
-      const unsigned char *p = picture->rgb + 3 * ((size_t)y * picture->image.width + (size_t)x);
-      if (abs(p[0] - r) < 12 && abs(p[1] - g) < 12 && abs(p[2] - b) < 12) {
-        sum += y;
-        count++;
-      }
-    }
-  }
-  return sum / count;
-}
 
 static char directory[] = "/tmp/plot-test-XXXXXX";
 
@@ -162,14 +65,14 @@ END_TEST
 START_TEST(every_plot_at_every_size) {
   static const int sizes[][2] = {{800, 600}, {400, 300}, {1600, 1200}, {200, 200}, {4000, 200}};
   json_t *result = plot_sample_result(1.27, 50, 10);
-  struct plot_input input = {result, directory, "multi-curvature, chosen design", 42, "abc"};
+  struct plot_input input = {result, directory, "multi-curvature, chosen design", 42, "abc", NULL};
   write_sample_surface(75);
   for (const char *const *plot = plot_names("response"); *plot; plot++) {
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
       char name[64];
       snprintf(name, sizeof name, "%s-%d", *plot, sizes[i][0]);
-      struct picture picture = render(*plot, &input, 1, sizes[i][0], sizes[i][1], name);
-      ck_assert_uint_gt(count_colour(&picture, 28, 37, 48), 50); /* the title's ink */
+      struct picture picture = picture_draw(*plot, &input, 1, sizes[i][0], sizes[i][1], name);
+      ck_assert_uint_gt(picture_count(&picture, 28, 37, 48), 50); /* the title's ink */
       free(picture.rgb);
     }
   }
@@ -179,17 +82,17 @@ END_TEST
 
 START_TEST(angle_shows_curve_fit_and_onset) {
   json_t *result = plot_sample_result(1.27, 50, 10);
-  struct plot_input input = {result, NULL, "", 1, NULL};
-  struct picture with = render("angle", &input, 1, 800, 600, NULL);
-  ck_assert_uint_gt(count_colour(&with, 0, 114, 178), 800);
-  ck_assert_uint_gt(count_colour(&with, 213, 94, 0), 100);
+  struct plot_input input = {result, NULL, "", 1, NULL, NULL};
+  struct picture with = picture_draw("angle", &input, 1, 800, 600, NULL);
+  ck_assert_uint_gt(picture_count(&with, 0, 114, 178), 800);
+  ck_assert_uint_gt(picture_count(&with, 213, 94, 0), 100);
   /* the curve rises: higher pressure is nearer the top */
-  ck_assert_double_gt(mean_y(&with, 200, 220, 0, 114, 178),
-                      mean_y(&with, 480, 500, 0, 114, 178) + 50);
+  ck_assert_double_gt(picture_mean_y(&with, 200, 220, 0, 114, 178),
+                      picture_mean_y(&with, 480, 500, 0, 114, 178) + 50);
   json_object_del(result, "fit");
   json_object_del(json_object_get(result, "metrics"), "contact_onset_kPa");
-  struct picture without = render("angle", &input, 1, 800, 600, NULL);
-  ck_assert_uint_eq(count_colour(&without, 213, 94, 0), 0);
+  struct picture without = picture_draw("angle", &input, 1, 800, 600, NULL);
+  ck_assert_uint_eq(picture_count(&without, 213, 94, 0), 0);
   free(with.rgb);
   free(without.rgb);
   json_decref(result);
@@ -198,19 +101,19 @@ END_TEST
 
 START_TEST(tip_moves_down) {
   json_t *result = plot_sample_result(1.27, 50, 10);
-  struct plot_input input = {result, NULL, "", 1, NULL};
-  struct picture picture = render("tip", &input, 1, 800, 600, NULL);
+  struct plot_input input = {result, NULL, "", 1, NULL, NULL};
+  struct picture picture = picture_draw("tip", &input, 1, 800, 600, NULL);
   int first = -1,
       last = -1; /* columns of the curve: it goes from the upper right to the lower left */
   for (int x = 0; x < 800; x++) {
-    if (mean_y(&picture, x, x + 1, 0, 114, 178) > 0) {
+    if (picture_mean_y(&picture, x, x + 1, 0, 114, 178) > 0) {
       first = first < 0 ? x : first;
       last = x;
     }
   }
   ck_assert_int_ge(first, 0);
-  ck_assert_double_gt(mean_y(&picture, first, first + 6, 0, 114, 178),
-                      mean_y(&picture, last - 5, last + 1, 0, 114, 178) + 100);
+  ck_assert_double_gt(picture_mean_y(&picture, first, first + 6, 0, 114, 178),
+                      picture_mean_y(&picture, last - 5, last + 1, 0, 114, 178) + 100);
   free(picture.rgb);
   json_decref(result);
 }
@@ -218,11 +121,11 @@ END_TEST
 
 START_TEST(surface_shows_both_states) {
   json_t *result = plot_sample_result(1.27, 50, 10);
-  struct plot_input input = {result, directory, "", 1, NULL};
+  struct plot_input input = {result, directory, "", 1, NULL, NULL};
   write_sample_surface(75);
-  struct picture picture = render("surface", &input, 1, 800, 600, NULL);
-  ck_assert_uint_gt(count_colour(&picture, 235, 236, 238), 2000); /* the body at rest */
-  ck_assert_uint_gt(count_colour(&picture, 68, 1, 84), 500);      /* least stretched places */
+  struct picture picture = picture_draw("surface", &input, 1, 800, 600, NULL);
+  ck_assert_uint_gt(picture_count(&picture, 235, 236, 238), 2000); /* the body at rest */
+  ck_assert_uint_gt(picture_count(&picture, 68, 1, 84), 500);      /* least stretched places */
   free(picture.rgb);
   json_decref(result);
 }
@@ -241,17 +144,17 @@ START_TEST(damaged_surfaces) {
       "{\"quads\":[[0,0,0,0]],\"states\":[{\"points_mm\":[[0,0,0]]},{\"points_mm\":[]}]}",
   };
   json_t *result = plot_sample_result(1.27, 50, 10);
-  struct plot_input input = {result, directory, "", 1, NULL};
-  ck_assert_int_eq(refuse("surface", &input, 1, 800, 600), STATUS_NOT_FOUND);
+  struct plot_input input = {result, directory, "", 1, NULL, NULL};
+  ck_assert_int_eq(picture_refuse("surface", &input, 1, 800, 600), STATUS_NOT_FOUND);
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
     write_surface(texts[i]);
-    ck_assert_int_eq(refuse("surface", &input, 1, 800, 600), STATUS_SYNTAX);
+    ck_assert_int_eq(picture_refuse("surface", &input, 1, 800, 600), STATUS_SYNTAX);
   }
   /* a body without extent and without stretches is odd, but can be drawn */
   write_surface("{\"quads\":[[0,0,0,0]],\"states\":[{\"points_mm\":[[5,5,5]]}]}");
-  free(render("surface", &input, 1, 800, 600, "surface-point").rgb);
+  free(picture_draw("surface", &input, 1, 800, 600, "surface-point").rgb);
   input.artifacts_dir = NULL;
-  ck_assert_int_eq(refuse("surface", &input, 1, 800, 600), STATUS_NOT_FOUND);
+  ck_assert_int_eq(picture_refuse("surface", &input, 1, 800, 600), STATUS_NOT_FOUND);
   json_decref(result);
 }
 END_TEST
@@ -289,11 +192,11 @@ START_TEST(incomplete_results) {
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
     json_t *result = json_loads(texts[i], 0, NULL);
     ck_assert_ptr_nonnull(result);
-    struct plot_input input = {result, NULL, LONG_NAME, 8, NULL};
+    struct plot_input input = {result, NULL, LONG_NAME, 8, NULL, NULL};
     for (size_t k = 0; k < sizeof plots / sizeof *plots; k++) {
       char name[64];
       snprintf(name, sizeof name, "incomplete-%zu-%s", i, plots[k]);
-      free(render(plots[k], &input, 1, 800, 600, name).rgb);
+      free(picture_draw(plots[k], &input, 1, 800, 600, name).rgb);
     }
     json_decref(result);
   }
@@ -307,15 +210,15 @@ START_TEST(convergence_shows_the_error) {
                               "{\"size\":0.25,\"error_percent\":0.25},"
                               "{\"size\":0.125,\"error_percent\":0.0625}]}",
                               0, NULL);
-  struct plot_input input = {result, NULL, "order two", 0, NULL};
-  struct picture picture = render("convergence", &input, 1, 800, 600, "convergence");
-  double left = mean_y(&picture, 80, 300, 0, 114, 178);
-  double right = mean_y(&picture, 500, 780, 0, 114, 178);
+  struct plot_input input = {result, NULL, "order two", 0, NULL, NULL};
+  struct picture picture = picture_draw("convergence", &input, 1, 800, 600, "convergence");
+  double left = picture_mean_y(&picture, 80, 300, 0, 114, 178);
+  double right = picture_mean_y(&picture, 500, 780, 0, 114, 178);
   ck_assert_double_gt(left, right + 100);
   free(picture.rgb);
   json_object_set_new(result, "meshes", json_array());
-  picture = render("convergence", &input, 1, 800, 600, NULL);
-  ck_assert_uint_eq(count_colour(&picture, 0, 114, 178), 0);
+  picture = picture_draw("convergence", &input, 1, 800, 600, NULL);
+  ck_assert_uint_eq(picture_count(&picture, 0, 114, 178), 0);
   free(picture.rgb);
   json_decref(result);
 }
@@ -323,13 +226,13 @@ END_TEST
 
 START_TEST(a_result_that_stopped_early_says_so) {
   json_t *result = plot_sample_result(1.27, 50, 10);
-  struct plot_input input = {result, NULL, LONG_NAME, 8, NULL};
-  struct picture fine = render("angle", &input, 1, 800, 600, NULL);
+  struct plot_input input = {result, NULL, LONG_NAME, 8, NULL, NULL};
+  struct picture fine = picture_draw("angle", &input, 1, 800, 600, NULL);
   json_object_set_new(result, "status", json_string("diverged"));
   json_object_set_new(result, "reason", json_string("limit_point"));
-  struct picture early = render("angle", &input, 1, 800, 600, "early");
-  ck_assert_uint_eq(count_colour(&fine, 168, 66, 0), 0);
-  ck_assert_uint_gt(count_colour(&early, 168, 66, 0), 20);
+  struct picture early = picture_draw("angle", &input, 1, 800, 600, "early");
+  ck_assert_uint_eq(picture_count(&fine, 168, 66, 0), 0);
+  ck_assert_uint_gt(picture_count(&early, 168, 66, 0), 20);
   free(fine.rgb);
   free(early.rgb);
   json_decref(result);
@@ -346,9 +249,9 @@ START_TEST(odd_names) {
                                       "\xe2\x80\xaeright to left"};
   json_t *result = plot_sample_result(1.27, 50, 10);
   for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-    struct plot_input input = {result, NULL, names[i], 0, "hash with \x01 bytes \xff"};
-    free(render("angle", &input, 1, 400, 300, NULL).rgb);
-    free(render("overlay", &input, 1, 400, 300, NULL).rgb);
+    struct plot_input input = {result, NULL, names[i], 0, "hash with \x01 bytes \xff", NULL};
+    free(picture_draw("angle", &input, 1, 400, 300, NULL).rgb);
+    free(picture_draw("overlay", &input, 1, 400, 300, NULL).rgb);
   }
   json_decref(result);
 }
@@ -360,23 +263,27 @@ START_TEST(overlays) {
   enum { MOST = 16 };
   struct plot_input inputs[MOST + 1];
   for (int i = 0; i <= MOST; i++) {
-    inputs[i] = (struct plot_input){plot_sample_result(0.7 + 0.1 * i, 50 - 2 * (i % 4), 10), NULL,
-                                    i % 3 ? "multi-curvature" : LONG_NAME, 100 + i, NULL};
+    inputs[i] = (struct plot_input){plot_sample_result(0.7 + 0.1 * i, 50 - 2 * (i % 4), 10),
+                                    NULL,
+                                    i % 3 ? "multi-curvature" : LONG_NAME,
+                                    100 + i,
+                                    NULL,
+                                    NULL};
   }
   for (size_t count = 1; count <= MOST; count++) {
     char name[64];
     snprintf(name, sizeof name, "overlay-%zu", count);
-    struct picture picture = render("overlay", inputs, count, 800, 600, name);
+    struct picture picture = picture_draw("overlay", inputs, count, 800, 600, name);
     for (size_t i = 0; i < 6; i++) {
-      size_t pixels = count_colour(&picture, colours[i][0], colours[i][1], colours[i][2]);
+      size_t pixels = picture_count(&picture, colours[i][0], colours[i][1], colours[i][2]);
       ck_assert_int_eq(pixels > 100, i < count);
     }
     free(picture.rgb);
     snprintf(name, sizeof name, "overlay-small-%zu", count);
-    free(render("overlay", inputs, count, 400, 300, name).rgb);
+    free(picture_draw("overlay", inputs, count, 400, 300, name).rgb);
   }
-  ck_assert_int_eq(refuse("overlay", inputs, MOST + 1, 800, 600), STATUS_INVALID);
-  ck_assert_int_eq(refuse("overlay", inputs, 0, 800, 600), STATUS_INVALID);
+  ck_assert_int_eq(picture_refuse("overlay", inputs, MOST + 1, 800, 600), STATUS_INVALID);
+  ck_assert_int_eq(picture_refuse("overlay", inputs, 0, 800, 600), STATUS_INVALID);
   for (int i = 0; i <= MOST; i++) {
     json_decref((json_t *)(uintptr_t)inputs[i].result);
   }
@@ -385,12 +292,12 @@ END_TEST
 
 START_TEST(refusals) {
   json_t *result = plot_sample_result(1.27, 50, 10);
-  struct plot_input input = {result, NULL, "", 1, NULL};
-  ck_assert_int_eq(refuse("no-such-plot", &input, 1, 800, 600), STATUS_NOT_FOUND);
-  ck_assert_int_eq(refuse("", &input, 1, 800, 600), STATUS_NOT_FOUND);
-  ck_assert_int_eq(refuse("angle", &input, 1, 199, 600), STATUS_INVALID);
-  ck_assert_int_eq(refuse("angle", &input, 1, 800, 4001), STATUS_INVALID);
-  ck_assert_int_eq(refuse("angle", &input, 1, -1, 0), STATUS_INVALID);
+  struct plot_input input = {result, NULL, "", 1, NULL, NULL};
+  ck_assert_int_eq(picture_refuse("no-such-plot", &input, 1, 800, 600), STATUS_NOT_FOUND);
+  ck_assert_int_eq(picture_refuse("", &input, 1, 800, 600), STATUS_NOT_FOUND);
+  ck_assert_int_eq(picture_refuse("angle", &input, 1, 199, 600), STATUS_INVALID);
+  ck_assert_int_eq(picture_refuse("angle", &input, 1, 800, 4001), STATUS_INVALID);
+  ck_assert_int_eq(picture_refuse("angle", &input, 1, -1, 0), STATUS_INVALID);
   json_decref(result);
 }
 END_TEST
@@ -407,7 +314,7 @@ static int has_bytes(const unsigned char *bytes, size_t size, const char *text) 
 
 START_TEST(the_file_says_where_it_comes_from) {
   json_t *result = plot_sample_result(1.27, 50, 10);
-  struct plot_input input = {result, NULL, "", 4711, "0123456789abcdef"};
+  struct plot_input input = {result, NULL, "", 4711, "0123456789abcdef", NULL};
   unsigned char *png = NULL;
   size_t size = 0;
   ck_assert_int_eq(plot_render("angle", &input, 1, 800, 600, &png, &size, NULL), STATUS_OK);
@@ -443,7 +350,7 @@ static void *draw_often(void *argument) {
 START_TEST(threads_draw_the_same_picture) {
   enum { THREADS = 6 };
   json_t *result = plot_sample_result(1.27, 50, 10);
-  struct plot_input input = {result, NULL, LONG_NAME, 1, NULL};
+  struct plot_input input = {result, NULL, LONG_NAME, 1, NULL, NULL};
   struct work works[THREADS] = {{0}};
   pthread_t threads[THREADS];
   for (int i = 0; i < THREADS; i++) {

@@ -1,0 +1,110 @@
+#include "server/plot/offer.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "server/plot/data.h"
+#include "server/plot/metric.h"
+#include "server/plot/ranking.h"
+
+/* What is less is round-off or the tolerance of the equilibrium. */
+static const double least_mm = 1e-3, least_deg = 0.05;
+
+/* Largest size of a number of the samples; -1 when no sample has it. */
+static double largest(const json_t *object, const char *key) {
+  const json_t *samples = json_object_get(object, "samples");
+  double size = -1;
+  for (size_t i = 0; i < json_array_size(samples); i++) {
+    size = fmax(size, fabs(data_number(json_array_get(samples, i), key)));
+  }
+  return size;
+}
+
+static double largest_of_members(const json_t *result, const char *key) {
+  const json_t *members = json_object_get(result, "members");
+  double size = -1;
+  for (size_t i = 0; i < json_array_size(members); i++) {
+    size = fmax(size, largest(json_array_get(members, i), key));
+  }
+  return size;
+}
+
+const char *offer_spatial(const struct plot_input *input) {
+  const json_t *lines = json_object_get(input->result, "midlines");
+  double size = largest(input->result, "tip_y_mm");
+  for (size_t i = 0; i < json_array_size(lines) && size <= least_mm; i++) {
+    const json_t *points = json_object_get(json_array_get(lines, i), "points_mm");
+    for (size_t k = 0; k < json_array_size(points); k++) {
+      size = fmax(size, fabs(data_element(json_array_get(points, k), 1)));
+    }
+  }
+  return size > least_mm ? NULL : "the body stays in its plane; see \"midline\" and \"tip\"";
+}
+
+const char *offer_measured(const struct plot_input *input) {
+  return json_array_size(json_object_get(input->result, "measured")) > 0
+             ? NULL
+             : "the job gives no measured curve";
+}
+
+const char *offer_metric(const struct plot_input *input) {
+  return metric_choose(input->result, input->metric) ? NULL : "no member has this metric";
+}
+
+const char *offer_ranking(const struct plot_input *input) {
+  return ranking_list(input->result) ? NULL : "the study asked for no ranking, or ranked nothing";
+}
+
+const char *offer_workspace(const struct plot_input *input) {
+  return largest_of_members(input->result, "tip_y_mm") > least_mm ? NULL
+                                                                  : "no tip leaves the plane y = 0";
+}
+
+const char *offer_twist(const struct plot_input *input) {
+  return largest_of_members(input->result, "twist_angle_deg") > least_deg ? NULL
+                                                                          : "no member twists";
+}
+
+const char *offer_contraction(const struct plot_input *input) {
+  return largest_of_members(input->result, "contraction_pct") >= 0
+             ? NULL
+             : "no member has recorded its contraction";
+}
+
+/* Whether a pointer is to a setting of the mesh. */
+static bool is_of_mesh(const char *pointer) {
+  return strcmp(pointer, "/accuracy") == 0 || strstr(pointer, "mesh") != NULL;
+}
+
+const char *offer_mesh(const struct plot_input *input) {
+  const json_t *members = json_object_get(input->result, "members");
+  double low = INFINITY, high = -INFINITY;
+  if (input->metric && !metric_choose(input->result, input->metric)) {
+    return "no member has this metric";
+  }
+  for (size_t i = 0; i < json_array_size(members); i++) {
+    json_t *member = json_array_get(members, i), *values = json_object_get(member, "values");
+    const char *pointer;
+    json_t *value;
+    double unknowns = data_number(json_object_get(member, "statistics"), "unknowns");
+    json_object_foreach(values, pointer, value) {
+      if (!is_of_mesh(pointer)) {
+        return "the members differ in more than their mesh";
+      }
+    }
+    low = fmin(low, unknowns);
+    high = fmax(high, unknowns);
+  }
+  return high > low && low >= 1 ? NULL : "the members have one mesh";
+}
+
+const char *offer_suction(const struct plot_input *input) {
+  const json_t *members = json_object_get(input->result, "members");
+  for (size_t i = 0; i < json_array_size(members); i++) {
+    const json_t *metrics = json_object_get(json_array_get(members, i), "metrics");
+    if (isfinite(data_number(metrics, "suction_force_N"))) {
+      return NULL;
+    }
+  }
+  return "no member has suckers";
+}
