@@ -15,6 +15,8 @@ const NAMES = {
   contraction_pct: ['Loss of reach', '%'],
   contact_onset_kPa: ['Chambers touch from', 'kPa'],
   max_stretch: ['Largest stretch', ''],
+  max_von_mises_kPa: ['Largest von Mises stress', 'kPa'],
+  max_principal_stress_kPa: ['Largest principal stress', 'kPa'],
   min_gap_mm: ['Smallest gap', 'mm'],
   max_penetration_mm: ['Largest penetration', 'mm'],
   wall_s: ['Elapsed time', 's'],

@@ -169,6 +169,11 @@ static void set_contact(json_t *o, const struct sample *s) {
   }
 }
 
+static void set_stress(json_t *o, const struct stress_peak *s) {
+  set_real(o, "max_von_mises_kPa", 1e-3 * s->von_mises);
+  set_real(o, "max_principal_stress_kPa", 1e-3 * s->principal);
+}
+
 static json_t *sample_object(const struct sample *s) {
   json_t *o = json_object();
   set_real(o, "pressure_kPa", 1e-3 * s->pressure);
@@ -182,6 +187,7 @@ static json_t *sample_object(const struct sample *s) {
   set_real(o, "cavity_volume_mm3", 1e9 * s->cavity_volume);
   set_real(o, "min_gap_mm", 1e3 * s->min_gap);
   set_real(o, "max_stretch", s->max_stretch);
+  set_stress(o, &s->stress);
   set_contact(o, s);
   json_object_set_new(o, "newton_iterations", json_integer(s->iterations));
   return o;
@@ -250,6 +256,7 @@ static json_t *metrics_object(const struct result *r) {
   }
   set_real(o, "cavity_volume_mm3", 1e9 * s->cavity_volume);
   set_real(o, "max_stretch", s->max_stretch);
+  set_stress(o, &s->stress);
   set_contact(o, s);
   set_real(o, "min_gap_mm", 1e3 * s->min_gap);
   set_real(o, "max_penetration_mm", 1e3 * r->penetration);

@@ -40,6 +40,7 @@ enum status sample_measure(struct fe_model *model, const struct fe_state *state,
   for (int c = 0; c < MESH_CAVITIES; c++) {
     sample->cavity_volume += model_cavity_volume(model, state, c) * (mesh->half ? 2 : 1);
   }
+  sample->stress = stress_peak(model, state);
   sample->max_stretch = shape_stretch(model, state->u, NULL);
   return sample->max_stretch < 0 ? STATUS_NO_MEMORY : STATUS_OK;
 }

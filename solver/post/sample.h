@@ -4,15 +4,17 @@
 
 #include "solver/post/shape.h"
 #include "solver/post/spatial.h"
+#include "solver/post/stress.h"
 
 struct sample {
-  double pressure; /* Pa */
+  double pressure;    /* Pa */
   struct shape shape; /* of a mesh that is marked spatial, its bending angle is spatial.bending */
   struct spatial spatial;
   double tip_deflection; /* of the end of the bottom centreline towards -z, m */
   double cavity_volume;  /* m3, whole body */
   double min_gap;        /* m, INFINITY without facing faces */
   double max_stretch;
+  struct stress_peak stress;
   bool touching;        /* the body can touch itself or a plane */
   double contact_force; /* sum of the normal forces where the body touches itself, N, whole body */
   double contact_area;  /* undeformed area there, m2, whole body */

@@ -74,6 +74,20 @@ enum status stress_at_nodes(const struct fe_model *model, const struct fe_state 
   return STATUS_OK;
 }
 
+struct stress_peak stress_peak(const struct fe_model *model, const struct fe_state *state) {
+  struct stress_peak peak = {.von_mises = 0, .principal = -INFINITY};
+  for (int e = 0; e < model->mesh->element_count; e++) {
+    double u[3][HEX27_STRIDE], stress[STRESS_COMPONENTS];
+    model_gather(model, state->u, e, u);
+    for (int q = 0; q < HEX27_POINTS; q++) {
+      cauchy_stress(model, state, e, q, u, stress);
+      peak.von_mises = fmax(peak.von_mises, stress_von_mises(stress));
+      peak.principal = fmax(peak.principal, stress_largest(stress));
+    }
+  }
+  return peak;
+}
+
 double stress_von_mises(const double s[STRESS_COMPONENTS]) {
   double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
   return sqrt(0.5 * (a * a + b * b + c * c) + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));

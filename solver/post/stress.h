@@ -13,6 +13,13 @@ enum { STRESS_COMPONENTS = 6 }; /* xx, yy, zz, xy, yz, xz */
 enum status stress_at_nodes(const struct fe_model *model, const struct fe_state *state,
                             double (*stress)[STRESS_COMPONENTS]);
 
+/* Largest values over all Gauss points, Pa; the largest principal stress is negative where all of
+ * the body is under compression. */
+struct stress_peak {
+  double von_mises, principal;
+};
+struct stress_peak stress_peak(const struct fe_model *model, const struct fe_state *state);
+
 /* Von Mises stress, largest principal stress, and pressure (-trace/3) of a stress. */
 double stress_von_mises(const double stress[STRESS_COMPONENTS]);
 double stress_largest(const double stress[STRESS_COMPONENTS]);

@@ -124,6 +124,9 @@ START_TEST(uniaxial_stress) {
     ck_assert_double_eq_tol(stress_largest(stress[n]), tested.difference, tolerance);
     ck_assert_double_eq_tol(stress_pressure(stress[n]), -tested.difference / 3, tolerance);
   }
+  struct stress_peak peak = stress_peak(m, &state);
+  ck_assert_double_eq_tol(peak.von_mises, tested.difference, tolerance);
+  ck_assert_double_eq_tol(peak.principal, tested.difference, tolerance);
   free(stress);
   state_release(&state);
   model_destroy(m);
