@@ -8,6 +8,7 @@
 #include "solver/mesh/actuator.h"
 #include "solver/post/deck.h"
 #include "solver/post/result.h"
+#include "solver/post/result_hlpv.h"
 #include "solver/post/result_measured.h"
 #include "solver/post/result_sensitivity.h"
 #include "solver/verify/verify.h"
@@ -148,6 +149,10 @@ static enum status run_other(const struct job_spec *spec, const struct run_optio
   }
   if (spec->kind == JOB_MATERIAL_CURVE) {
     return curve_job(spec, document, error);
+  }
+  if (spec->kind == JOB_HLPV) {
+    struct result_hlpv_options hlpv = {options->events, options->cancelled};
+    return result_hlpv(spec, &hlpv, document, ending, error);
   }
   struct verify_options verify = {options->events, options->cancelled};
   return verify_job(spec, &verify, document, ending, error);

@@ -22,6 +22,9 @@
   X(LIMIT_POINT, "limit_point", "the load passed a limit point of the equilibrium path")           \
   X(UNSTABLE_PATH, "loss_of_stability",                                                            \
     "the equilibrium loses its stability: it would snap or wrinkle")                               \
+  X(CHATTERING, "chattering", "guards send the state to and fro at one time")                      \
+  X(ZENO, "zeno", "infinitely many switches accumulate before a finite time")                      \
+  X(EVENTS, "too_many_events", "more switches were made than are followed")                        \
   X(TIMEOUT, "timeout", "the time limit was reached")                                              \
   X(CANCELLED, "cancelled", "the work was cancelled")                                              \
   X(INTERNAL, "internal_error", "an invariant of the program does not hold")

@@ -18,7 +18,7 @@ struct slot {
 };
 
 static const struct slot slots[] = {
-    {NULL, "data", true}, {"measured", "data", true}, {NULL, "base", false}};
+    {NULL, "data", true}, {"measured", "data", true}, {"input", "data", true}, {NULL, "base", false}};
 
 enum { SLOTS = sizeof slots / sizeof *slots, EMBED_LEVELS = 2 };
 

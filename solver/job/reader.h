@@ -86,6 +86,11 @@ enum status oblique_fit(bool chambers_given, struct oblique_spec *spec, struct e
 /* The part of pneunet_check that is about the suckers. */
 enum status pneunet_check_suckers(const struct pneunet_spec *spec, struct error *error);
 
+/* Fills name, timeout and hlpv of the job, which its release frees, also after a failure.
+ * STATUS_OK, STATUS_INVALID or TOO_LARGE with the pointer to the member that has to change,
+ * STATUS_NO_MEMORY. */
+enum status reader_hlpv(const struct reader *reader, const json_t *document, struct job_spec *job);
+
 /* SHA-256 of the canonical text of the document (sorted keys, no spaces, whole reals as integers)
  * without name, labels and comments, as 64 hexadecimal digits. STATUS_OK or STATUS_NO_MEMORY. */
 enum status job_hash(const json_t *document, char hash[65], struct error *error);

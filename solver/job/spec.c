@@ -6,6 +6,7 @@
 
 #include "solver/base/text.h"
 #include "solver/job/embed.h"
+#include "solver/job/hlpv.h"
 #include "solver/job/json.h"
 #include "solver/job/reader.h"
 #include "solver/job/schema.h"
@@ -253,6 +254,7 @@ static enum status read_kind(const struct job_reader *job_reader, const struct r
          : strcmp(kind, "study") == 0          ? read_study(job_reader, reader, document, spec)
          : strcmp(kind, "fit-material") == 0   ? reader_fit(reader, document, spec)
          : strcmp(kind, "material-curve") == 0 ? reader_material_curve(reader, document, spec)
+         : strcmp(kind, "hlpv") == 0           ? reader_hlpv(reader, document, spec)
                                                : read_response(reader, document, spec);
 }
 
@@ -286,6 +288,9 @@ enum status job_reader_check(const struct job_reader *reader, json_t *document,
   if (status == STATUS_OK && keeps_document(spec)) {
     spec->document = json_incref(document);
   }
+  if (status != STATUS_OK) {
+    job_spec_release(spec);
+  }
   return status;
 }
 
@@ -309,6 +314,7 @@ enum status job_reader_read(const struct job_reader *reader, const char *text, s
 
 void job_spec_release(struct job_spec *spec) {
   json_decref(spec->document);
+  hlpv_spec_destroy(spec->hlpv);
   *spec = (struct job_spec){.kind = JOB_RESPONSE};
 }
 

@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include "solver/base/error.h"
 
-enum job_kind { JOB_RESPONSE, JOB_VERIFY, JOB_STUDY, JOB_FIT_MATERIAL, JOB_MATERIAL_CURVE };
+enum job_kind { JOB_RESPONSE, JOB_VERIFY, JOB_STUDY, JOB_FIT_MATERIAL, JOB_MATERIAL_CURVE, JOB_HLPV };
 
 /* ---- material --------------------------------------------------------------------------- */
 
@@ -220,9 +220,12 @@ struct material_curve_spec {
   int points;
 };
 
+/* A model with guards and its input: solver/job/hlpv.h. */
+struct hlpv_spec;
+
 /* Only the members of its kind are filled: of a verify job name, verify, timeout and hash; of a
  * study name, timeout, hash and document; of a fit name, fit, timeout, hash and document; of a
- * material curve name, material, curve and hash. */
+ * material curve name, material, curve and hash; of an hlpv job name, hlpv, timeout and hash. */
 struct job_spec {
   enum job_kind kind;
   char name[200];
@@ -239,6 +242,7 @@ struct job_spec {
   struct verify_spec verify;
   struct fit_spec fit;
   struct material_curve_spec curve;
+  struct hlpv_spec *hlpv; /* of an hlpv job, else NULL; owned and borrowed as document */
   bool contact;
   struct plane_spec plane[PLANES_MAX];
   int plane_count;

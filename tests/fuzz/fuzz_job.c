@@ -3,6 +3,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "solver/job/hlpv.h"
 #include "solver/job/spec.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -21,6 +22,9 @@ static void check_error(const struct error *error, enum status status) {
 static bool is_complete(const struct job_spec *spec) {
   if (spec->kind == JOB_VERIFY) {
     return spec->verify.name[0] != '\0' && spec->verify.refinement >= 1;
+  }
+  if (spec->kind == JOB_HLPV) {
+    return spec->hlpv->mode_count >= 1 && spec->hlpv->mass > 0.0 && spec->hlpv->end > 0.0;
   }
   if (spec->kind == JOB_STUDY) {
     return json_is_object(spec->document) && spec->timeout_s > 0.0;

@@ -1,0 +1,271 @@
+#include "solver/hlpv/simulate.h"
+
+#include <math.h>
+#include <string.h>
+#include "solver/base/clock.h"
+#include "solver/hlpv/accumulation.h"
+#include "solver/hlpv/check.h"
+#include "solver/hlpv/integrator.h"
+#include "solver/hlpv/record.h"
+
+/* Sizes of a state by which its loss to infinity is known. */
+#define UNBOUNDED 1e6
+/* Part of a state's size that decides nothing. */
+#define GRAZING 1e-6
+
+enum { STEPS_BETWEEN_LOOKS = 256 };
+
+struct simulation {
+  const struct hlpv_spec *spec;
+  const struct hlpv_options *options;
+  struct integrator *integrator;
+  struct recorder recorder;
+  double size[HLPV_STATES];
+  int mode;
+  struct hlpv_point now;
+  struct set_point set_point;
+  double reported_s;                 /* wall clock of the last progress line */
+  bool grazed[HLPV_TRANSITIONS_MAX]; /* a near miss has been told of */
+  bool checked[HLPV_MODES_MAX];      /* used since the last corner */
+};
+
+/* ---- one mode ----------------------------------------------------------------------------- */
+
+static void set_point_of_time(struct simulation *s, double time, const double x[HLPV_STATES],
+                              struct hlpv_point *point) {
+  point->time = time;
+  memmove(point->x, x, sizeof point->x);
+  hlpv_derivative(s->spec, s->mode, set_point_at(&s->set_point, time), point->x, point->rate);
+}
+
+/* How far the quantity will go beyond a guard that it passes now, to second order. */
+static double overshoot(const struct simulation *s, int quantity) {
+  const double moment = 1e-6;
+  double x[HLPV_STATES], rate[HLPV_STATES];
+  for (int i = 0; i < HLPV_STATES; i++) {
+    x[i] = s->now.x[i] + moment * s->now.rate[i];
+  }
+  hlpv_derivative(s->spec, s->mode, set_point_at(&s->set_point, s->now.time), x, rate);
+  double bend = (rate[quantity] - s->now.rate[quantity]) / moment;
+  double speed = s->now.rate[quantity];
+  return bend * speed < 0.0 ? 0.5 * speed * speed / fabs(bend) : INFINITY;
+}
+
+static enum status restart(struct simulation *s, double stop, struct error *error) {
+  if (!s->checked[s->mode]) {
+    s->checked[s->mode] = true;
+    check_coefficients(&s->recorder, s->mode, s->now.time, &s->set_point, stop);
+  }
+  set_point_of_time(s, s->now.time, s->now.x, &s->now);
+  return integrator_restart(s->integrator, s->mode, &s->set_point, s->now.time, s->now.x, stop,
+                            error);
+}
+
+/* ---- switches ----------------------------------------------------------------------------- */
+
+static enum status make_switch(struct simulation *s, int index, struct error *error) {
+  const struct hlpv_transition *transition = &s->spec->transition[index];
+  struct hlpv_event event = {.time = s->now.time, .transition = index};
+  event.grazing = overshoot(s, transition->quantity) < s->recorder.small[transition->quantity];
+  memcpy(event.before, s->now.x, sizeof event.before);
+  for (int i = 0; i < HLPV_STATES; i++) {
+    event.after[i] = transition->reset[i].factor * s->now.x[i] + transition->reset[i].value;
+  }
+  if (event.grazing) {
+    recorder_warn(
+        &s->recorder,
+        "grazing: at %.9g s the guard of transition %d is passed, but hardly: a change in "
+        "the sixth digit of the model may undo the switch",
+        event.time, index);
+  }
+  s->mode = transition->to;
+  set_point_of_time(s, s->now.time, event.after, &s->now);
+  enum status status = recorder_event(&s->recorder, &event, error);
+  return status == STATUS_OK ? accumulation_check(s->recorder.out, error) : status;
+}
+
+/* Makes the switch of `index`, then those that its reset leads to at the same time. */
+static enum status make_switches(struct simulation *s, int index, struct error *error) {
+  while (index >= 0) {
+    enum status status = make_switch(s, index, error);
+    if (status != STATUS_OK) {
+      return status;
+    }
+    double u = set_point_at(&s->set_point, s->now.time);
+    index = -1;
+    for (int i = 0; i < s->spec->transition_count && index < 0; i++) {
+      const struct hlpv_transition *next = &s->spec->transition[i];
+      if (next->from == s->mode && hlpv_is_crossed(s->spec, next, u, s->now.x)) {
+        index = i;
+      }
+    }
+  }
+  return STATUS_OK;
+}
+
+/* The first guard that is passed, or -1; tells of those that are only just missed. */
+static int passed_guard(struct simulation *s, const int root[HLPV_TRANSITIONS_MAX]) {
+  for (int i = 0; i < s->spec->transition_count; i++) {
+    if (root[i] & ROOT_GUARD) {
+      return i;
+    }
+  }
+  for (int i = 0; i < s->spec->transition_count; i++) {
+    const struct hlpv_transition *transition = &s->spec->transition[i];
+    double missed = fabs(s->now.x[transition->quantity] - transition->level);
+    if ((root[i] & ROOT_EXTREMUM) && missed < s->recorder.small[transition->quantity] &&
+        !s->grazed[i]) {
+      s->grazed[i] = true;
+      recorder_warn(&s->recorder,
+                    "grazing: at %.9g s the state turns just before the guard of transition %d, "
+                    "which it misses by %.2g of its level",
+                    s->now.time, i, missed / fmax(fabs(transition->level), 1e-300));
+    }
+  }
+  return -1;
+}
+
+/* ---- along the time ----------------------------------------------------------------------- */
+
+static bool is_bounded(const struct simulation *s) {
+  for (int i = 0; i < HLPV_STATES; i++) {
+    if (!(fabs(s->now.x[i]) <= UNBOUNDED * s->size[i])) {
+      return false;
+    }
+  }
+  return true;
+}
+
+static enum status look_around(struct simulation *s, struct error *error) {
+  const struct hlpv_options *options = s->options;
+  double wall = clock_wall_s();
+  if (options->events && wall > s->reported_s + 0.5) {
+    fprintf(options->events, "{\"event\":\"progress\",\"fraction\":%.4f,\"time_s\":%.6g}\n",
+            s->now.time / s->spec->end, s->now.time);
+    fflush(options->events);
+    s->reported_s = wall;
+  }
+  if (options->cancelled && options->cancelled(NULL)) {
+    return error_set(error, STATUS_CANCELLED, NULL, "cancelled at %.9g s of %.9g s", s->now.time,
+                     s->spec->end);
+  }
+  if (options->deadline_s > 0.0 && wall > options->deadline_s) {
+    return error_set(error, STATUS_TIMEOUT, NULL, "the time limit was reached at %.9g s of %.9g s",
+                     s->now.time, s->spec->end);
+  }
+  return is_bounded(s) ? STATUS_OK
+                       : error_set(error, STATUS_DIVERGED, NULL,
+                                   "at %.9g s the state has grown to %.3g m: the mode \"%.40s\" is "
+                                   "not stable",
+                                   s->now.time, s->now.x[HLPV_H], s->spec->mode[s->mode].name);
+}
+
+/* One step of the integrator with its samples. */
+static enum status advance(struct simulation *s, int root[HLPV_TRANSITIONS_MAX],
+                           struct error *error) {
+  struct hlpv_point before = s->now;
+  double time = s->now.time, x[HLPV_STATES];
+  memcpy(x, s->now.x, sizeof x);
+  enum status status = integrator_step(s->integrator, &time, x, root, error);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  while (recorder_next(&s->recorder) <= time) {
+    double between[HLPV_STATES];
+    memcpy(between, x, sizeof between);
+    integrator_interpolate(s->integrator, recorder_next(&s->recorder), between);
+    recorder_sample(&s->recorder, s->mode, between);
+  }
+  set_point_of_time(s, time, x, &s->now);
+  recorder_span(&s->recorder, &before, &s->now);
+  return STATUS_OK;
+}
+
+/* From now to `stop`, a corner of the set-point. */
+static enum status run_piece(struct simulation *s, double stop, struct error *error) {
+  enum status status = restart(s, stop, error);
+  for (long step = 0; status == STATUS_OK && s->now.time < stop; step++) {
+    int root[HLPV_TRANSITIONS_MAX];
+    status = advance(s, root, error);
+    if (status == STATUS_OK && (step % STEPS_BETWEEN_LOOKS == 0 || !is_bounded(s))) {
+      status = look_around(s, error);
+    }
+    int index = status == STATUS_OK ? passed_guard(s, root) : -1;
+    if (index >= 0) {
+      integrator_count(s->integrator, &s->recorder.out->counts);
+      /* The root is found to round-off: what the reset keeps of the quantity is its level. */
+      s->now.x[s->spec->transition[index].quantity] = s->spec->transition[index].level;
+      status = make_switches(s, index, error);
+      if (status == STATUS_OK && s->now.time < stop) {
+        status = restart(s, stop, error);
+      }
+    }
+  }
+  integrator_count(s->integrator, &s->recorder.out->counts);
+  return status;
+}
+
+/* The piece of the set-point that begins at the corner `index`; returns its end. */
+static double open_piece(struct simulation *s, size_t index) {
+  const struct hlpv_input *input = &s->spec->input;
+  bool sine = input->profile == HLPV_SINE;
+  bool last = sine || index + 1 >= input->count;
+  double end = last ? s->spec->end : fmin(input->time[index + 1], s->spec->end);
+  s->set_point = (struct set_point){.input = input, .start = s->now.time};
+  if (!sine) {
+    s->set_point.start = input->time[index];
+    s->set_point.value = input->value[index];
+  }
+  if (input->profile == HLPV_LINEAR && !last) {
+    s->set_point.slope = (input->value[index + 1] - input->value[index]) /
+                         (input->time[index + 1] - input->time[index]);
+  }
+  memset(s->checked, 0, sizeof s->checked);
+  return end;
+}
+
+static enum status run_all(struct simulation *s, struct error *error) {
+  bool held = s->spec->input.profile == HLPV_HELD;
+  enum status status = STATUS_OK;
+  for (size_t i = 0; status == STATUS_OK && s->now.time < s->spec->end; i++) {
+    double stop = open_piece(s, i);
+    if (i == 0) {
+      recorder_sample(&s->recorder, s->mode, s->now.x);
+    }
+    if (held) {
+      recorder_hold_open(&s->recorder, s->now.time, s->set_point.value, s->mode, s->now.x);
+    }
+    status = run_piece(s, stop, error);
+    recorder_hold_close(&s->recorder, s->now.time, s->mode, s->now.x);
+    if (status == STATUS_OK) {
+      s->now.time = stop;
+      status = look_around(s, error);
+    }
+  }
+  return status;
+}
+
+enum status hlpv_simulate(const struct hlpv_spec *spec, const struct hlpv_options *options,
+                          struct hlpv_trajectory *trajectory, struct error *error) {
+  struct simulation s = {.spec = spec, .options = options, .mode = spec->initial_mode};
+  *trajectory = (struct hlpv_trajectory){0};
+  s.recorder = (struct recorder){.spec = spec, .out = trajectory};
+  memcpy(s.now.x, spec->initial, sizeof s.now.x);
+  check_sizes(spec, s.size);
+  for (int i = 0; i < HLPV_STATES; i++) {
+    s.recorder.small[i] = GRAZING * s.size[i];
+  }
+  enum status status = recorder_open(&s.recorder, error);
+  if (status == STATUS_OK) {
+    status = integrator_create(spec, s.size, &s.integrator, error);
+  }
+  if (status == STATUS_OK) {
+    check_model(&s.recorder);
+    status = run_all(&s, error);
+  }
+  trajectory->time = s.now.time;
+  trajectory->mode = s.mode;
+  memcpy(trajectory->x, s.now.x, sizeof trajectory->x);
+  integrator_destroy(s.integrator);
+  return status;
+}

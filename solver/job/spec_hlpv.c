@@ -1,0 +1,392 @@
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "solver/base/table.h"
+#include "solver/base/text.h"
+#include "solver/job/hlpv.h"
+#include "solver/job/json.h"
+#include "solver/job/reader.h"
+
+enum { POINTER_MAX = 220, QUOTED_MAX = 60 };
+
+static const char *const quantity_keys[HLPV_STATES] = {"h", "velocity", "pressure"};
+static const char *const quantity_units[HLPV_STATES] = {"mm", "m/s", "kPa"};
+
+/* ---- modes -------------------------------------------------------------------------------- */
+
+static enum status read_polynomial(const struct reader *reader, const json_t *value,
+                                   const char *unit, const char *pointer,
+                                   struct hlpv_polynomial *polynomial) {
+  *polynomial = (struct hlpv_polynomial){.count = 1, .per = 1.0};
+  if (json_is_string(value)) {
+    polynomial->c[0] = reader_quantity(reader, value, unit);
+    return STATUS_OK;
+  }
+  const char *per = json_string_value(json_object_get(value, "per"));
+  char quantity[QUOTED_MAX], quoted[QUOTED_MAX], where[POINTER_MAX + 8];
+  snprintf(quantity, sizeof quantity, "1 %s", per);
+  if (units_read(reader->units, quantity, "kPa", &polynomial->per, NULL) != STATUS_OK ||
+      !(polynomial->per > 0.0)) {
+    snprintf(where, sizeof where, "%s/per", pointer);
+    return error_set(reader->error, STATUS_INVALID, where,
+                     "%s is no unit of pressure; for example \"psi\" or \"kPa\"",
+                     text_quote(quoted, sizeof quoted, per));
+  }
+  const json_t *coefficients = json_object_get(value, "coefficients");
+  polynomial->count = (int)json_array_size(coefficients);
+  for (int i = 0; i < polynomial->count; i++) {
+    polynomial->c[i] = reader_quantity(reader, json_array_get(coefficients, (size_t)i), unit);
+  }
+  return STATUS_OK;
+}
+
+static enum status read_mode(const struct reader *reader, const char *name, const json_t *value,
+                             struct hlpv_mode *mode) {
+  const struct {
+    const char *key, *unit;
+    struct hlpv_polynomial *polynomial;
+  } parts[] = {{"stiffness", "N/m", &mode->stiffness},
+               {"damping", "N s/m", &mode->damping},
+               {"alpha", "1/s", &mode->alpha},
+               {"beta", "1/s", &mode->beta}};
+  struct json_pointer pointer = {.length = 0};
+  json_pointer_key(&pointer, "model");
+  json_pointer_key(&pointer, "modes");
+  json_pointer_key(&pointer, name);
+  enum status status = STATUS_OK;
+  reader_copy(mode->name, sizeof mode->name, name);
+  mode->rest = reader_member(reader, value, "rest", "mm", 0.0);
+  for (size_t i = 0; i < sizeof parts / sizeof *parts && status == STATUS_OK; i++) {
+    size_t mark = json_pointer_key(&pointer, parts[i].key);
+    status = read_polynomial(reader, json_object_get(value, parts[i].key), parts[i].unit,
+                             pointer.text, parts[i].polynomial);
+    json_pointer_pop(&pointer, mark);
+  }
+  const json_t *range = json_object_get(value, "range");
+  mode->from = range ? reader_quantity(reader, json_array_get(range, 0), "kPa") : -INFINITY;
+  mode->to = range ? reader_quantity(reader, json_array_get(range, 1), "kPa") : INFINITY;
+  if (status == STATUS_OK && !(mode->from < mode->to)) {
+    json_pointer_key(&pointer, "range");
+    status = error_set(reader->error, STATUS_INVALID, pointer.text,
+                       "the range must rise; for example [\"0 psi\", \"8 psi\"]");
+  }
+  return status;
+}
+
+static enum status read_modes(const struct reader *reader, const json_t *modes,
+                              struct hlpv_spec *spec) {
+  const char *name;
+  json_t *value;
+  if (json_object_size(modes) == 0) {
+    return error_set(reader->error, STATUS_INVALID, "/model/modes",
+                     "at least one mode is wanted; for example \"compressed\": { ... }");
+  }
+  json_object_foreach((json_t *)modes, name, value) {
+    enum status status = read_mode(reader, name, value, &spec->mode[spec->mode_count++]);
+    if (status != STATUS_OK) {
+      return status;
+    }
+  }
+  return STATUS_OK;
+}
+
+/* The index of the mode of that name. */
+static enum status find_mode(const struct reader *reader, const struct hlpv_spec *spec,
+                             const char *name, const char *pointer, int *index) {
+  const char *words[HLPV_MODES_MAX];
+  for (*index = 0; *index < spec->mode_count; ++*index) {
+    words[*index] = spec->mode[*index].name;
+    if (strcmp(words[*index], name) == 0) {
+      return STATUS_OK;
+    }
+  }
+  char quoted[QUOTED_MAX], known[QUOTED_MAX];
+  const char *near = text_nearest(name, words, (size_t)spec->mode_count);
+  return error_set(reader->error, STATUS_INVALID, pointer,
+                   "there is no mode %s; %s is one of the model's %d",
+                   text_quote(quoted, sizeof quoted, name),
+                   text_quote(known, sizeof known, near ? near : words[0]), spec->mode_count);
+}
+
+/* ---- transitions -------------------------------------------------------------------------- */
+
+static enum status read_guard(const struct reader *reader, const json_t *when, const char *pointer,
+                              struct hlpv_transition *transition) {
+  int given = 0;
+  for (int i = 0; i < HLPV_STATES; i++) {
+    const json_t *level = json_object_get(when, quantity_keys[i]);
+    if (level) {
+      given++;
+      transition->quantity = (enum hlpv_quantity)i;
+      transition->level = reader_quantity(reader, level, quantity_units[i]);
+    }
+  }
+  transition->direction =
+      strcmp(json_string_value(json_object_get(when, "direction")), "rising") == 0 ? 1 : -1;
+  if (given != 1) {
+    return error_set(reader->error, STATUS_INVALID, pointer,
+                     "one of \"h\", \"velocity\" or \"pressure\" is wanted, not %d; for example "
+                     "{ \"h\": \"14 mm\", \"direction\": \"rising\" }",
+                     given);
+  }
+  return STATUS_OK;
+}
+
+static void read_reset(const struct reader *reader, const json_t *reset,
+                       struct hlpv_transition *transition) {
+  for (int i = 0; i < HLPV_STATES; i++) {
+    const json_t *value = json_object_get(reset, quantity_keys[i]);
+    const json_t *factor = json_object_get(value, "times");
+    struct hlpv_reset *map = &transition->reset[i];
+    *map = (struct hlpv_reset){.factor = 1.0};
+    if (factor) {
+      map->factor = json_number_value(factor);
+    } else if (value) {
+      *map = (struct hlpv_reset){.value = reader_quantity(reader, value, quantity_units[i])};
+    }
+  }
+}
+
+static enum status read_transitions(const struct reader *reader, const json_t *transitions,
+                                    struct hlpv_spec *spec) {
+  size_t index;
+  json_t *value;
+  enum status status = STATUS_OK;
+  json_array_foreach(transitions, index, value) {
+    struct hlpv_transition *transition = &spec->transition[spec->transition_count++];
+    char pointer[POINTER_MAX];
+    snprintf(pointer, sizeof pointer, "/model/transitions/%zu/from", index);
+    status = find_mode(reader, spec, json_string_value(json_object_get(value, "from")), pointer,
+                       &transition->from);
+    if (status == STATUS_OK) {
+      snprintf(pointer, sizeof pointer, "/model/transitions/%zu/to", index);
+      status = find_mode(reader, spec, json_string_value(json_object_get(value, "to")), pointer,
+                         &transition->to);
+    }
+    if (status == STATUS_OK) {
+      snprintf(pointer, sizeof pointer, "/model/transitions/%zu/when", index);
+      status = read_guard(reader, json_object_get(value, "when"), pointer, transition);
+    }
+    if (status != STATUS_OK) {
+      return status;
+    }
+    read_reset(reader, json_object_get(value, "reset"), transition);
+  }
+  return STATUS_OK;
+}
+
+/* ---- the set-point ------------------------------------------------------------------------ */
+
+static enum status reserve_points(const struct reader *reader, size_t count,
+                                  struct hlpv_input *input) {
+  input->count = count;
+  input->time = calloc(count, sizeof *input->time);
+  input->value = calloc(count, sizeof *input->value);
+  return input->time && input->value
+             ? STATUS_OK
+             : error_set(reader->error, STATUS_NO_MEMORY, NULL, "no memory for the set-point");
+}
+
+/* line: of each point in its table, NULL for points of the job itself. */
+static enum status check_times(const struct reader *reader, const struct hlpv_input *input,
+                               const int *line, const char *pointer) {
+  for (size_t i = 0; i < input->count; i++) {
+    char where[POINTER_MAX], place[40] = "";
+    snprintf(where, sizeof where, line ? "%s" : "%s/%zu/0", pointer, i);
+    if (line) {
+      snprintf(place, sizeof place, "line %d: ", line[i]);
+    }
+    if (i == 0 && input->time[i] != 0.0) {
+      return error_set(reader->error, STATUS_INVALID, where,
+                       "%sthe set-point begins at %.9g s; its first time must be 0 s", place,
+                       input->time[i]);
+    }
+    if (i > 0 && !(input->time[i] > input->time[i - 1])) {
+      return error_set(reader->error, STATUS_INVALID, where,
+                       "%sthe time %.9g s is not after the one before it, %.9g s: times must rise",
+                       place, input->time[i], input->time[i - 1]);
+    }
+  }
+  return STATUS_OK;
+}
+
+static enum status read_points(const struct reader *reader, const json_t *points,
+                               const char *pointer, struct hlpv_input *input) {
+  size_t index;
+  json_t *point;
+  enum status status = reserve_points(reader, json_array_size(points), input);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  json_array_foreach(points, index, point) {
+    const json_t *time = json_array_get(point, 0), *value = json_array_get(point, 1);
+    struct error *error = reader->error;
+    char where[POINTER_MAX];
+    status = units_read(reader->units, json_string_value(time), "s", &input->time[index], error);
+    snprintf(where, sizeof where, "%s/%zu/0", pointer, index);
+    if (status == STATUS_OK) {
+      status =
+          units_read(reader->units, json_string_value(value), "kPa", &input->value[index], error);
+      snprintf(where, sizeof where, "%s/%zu/1", pointer, index);
+    }
+    if (status == STATUS_OK && fabs(input->value[index]) > 1e9) {
+      status = error_set(error, STATUS_INVALID, where,
+                         "a set-point beyond 1 GPa is none of a soft actuator; for example \"4 "
+                         "psi\"");
+    }
+    if (status != STATUS_OK) {
+      reader_copy(error->pointer, sizeof error->pointer, where);
+      return status;
+    }
+  }
+  return check_times(reader, input, NULL, pointer);
+}
+
+static enum status read_data(const struct reader *reader, const json_t *value,
+                             struct hlpv_input *input) {
+  const json_t *columns = json_object_get(value, "columns");
+  const char *text = json_string_value(json_object_get(json_object_get(value, "data"), "csv"));
+  const char *between = json_string_value(json_object_get(value, "between"));
+  struct column_spec time, set_point;
+  struct table table = {0};
+  enum status status =
+      reader_column(reader, columns, "/input/columns", "time", "s", "\"s\" or \"ms\"", &time);
+  if (status == STATUS_OK) {
+    status = reader_column(reader, columns, "/input/columns", "set_point", "kPa",
+                           "\"kPa\" or \"psi\"", &set_point);
+  }
+  if (status != STATUS_OK) {
+    return status;
+  }
+  const struct table_column wanted[] = {{time.name, time.pointer},
+                                        {set_point.name, set_point.pointer}};
+  status = table_read(text, strlen(text), "/input/data/csv", wanted, 2, &table, reader->error);
+  if (status == STATUS_OK) {
+    status = reserve_points(reader, table.rows, input);
+  }
+  if (status == STATUS_OK) {
+    for (size_t i = 0; i < table.rows; i++) {
+      input->time[i] = time.si * table.value[0][i];
+      input->value[i] = set_point.si * table.value[1][i];
+    }
+    input->profile = strcmp(between, "linear") == 0 ? HLPV_LINEAR : HLPV_HELD;
+    status = check_times(reader, input, table.line, "/input/data/csv");
+  }
+  table_release(&table);
+  return status;
+}
+
+static void read_sine(const struct reader *reader, const json_t *sine, struct hlpv_input *input) {
+  input->profile = HLPV_SINE;
+  input->mean = reader_member(reader, sine, "mean", "kPa", 0.0);
+  input->amplitude = reader_member(reader, sine, "amplitude", "kPa", 0.0);
+  input->frequency = reader_member(reader, sine, "frequency", "Hz", 0.0);
+  input->phase = reader_member(reader, sine, "phase", "deg", 0.0);
+}
+
+static enum status read_input(const struct reader *reader, const json_t *value,
+                              struct hlpv_input *input) {
+  const json_t *hold = json_object_get(value, "hold"), *linear = json_object_get(value, "linear");
+  const json_t *sine = json_object_get(value, "sine"), *data = json_object_get(value, "data");
+  int given = !!hold + !!linear + !!sine + !!data;
+  if (given != 1) {
+    return error_set(reader->error, STATUS_INVALID, "/input",
+                     "one of \"hold\", \"linear\", \"sine\" or \"data\" is wanted, not %d; for "
+                     "example { \"hold\": [[\"0 s\", \"3 psi\"], [\"5 s\", \"4 psi\"]] }",
+                     given);
+  }
+  if (!data && json_object_get(value, "columns")) {
+    return error_set(reader->error, STATUS_INVALID, "/input/columns",
+                     "columns are those of a table in \"data\", which is not there");
+  }
+  if (data && !json_object_get(value, "columns")) {
+    return error_set(reader->error, STATUS_INVALID, "/input",
+                     "the key \"columns\" is missing; for example { \"time\": { \"name\": \"t\", "
+                     "\"unit\": \"s\" }, \"set_point\": { \"name\": \"u\", \"unit\": \"kPa\" } }");
+  }
+  if (sine) {
+    read_sine(reader, sine, input);
+    return STATUS_OK;
+  }
+  if (data) {
+    return read_data(reader, value, input);
+  }
+  input->profile = hold ? HLPV_HELD : HLPV_LINEAR;
+  return read_points(reader, hold ? hold : linear, hold ? "/input/hold" : "/input/linear", input);
+}
+
+/* ---- the whole ---------------------------------------------------------------------------- */
+
+static enum status read_initial(const struct reader *reader, const json_t *value,
+                                struct hlpv_spec *spec) {
+  const json_t *mode = json_object_get(value, "mode");
+  enum status status =
+      mode ? find_mode(reader, spec, json_string_value(mode), "/initial/mode", &spec->initial_mode)
+           : STATUS_OK;
+  for (int i = 0; i < HLPV_STATES; i++) {
+    spec->initial[i] = reader_member(reader, value, quantity_keys[i], quantity_units[i], 0.0);
+  }
+  return status;
+}
+
+static enum status check_start(const struct reader *reader, const struct hlpv_spec *spec) {
+  for (int i = 0; i < spec->transition_count; i++) {
+    const struct hlpv_transition *transition = &spec->transition[i];
+    char pointer[40];
+    snprintf(pointer, sizeof pointer, "/initial/%s", quantity_keys[transition->quantity]);
+    if (transition->from == spec->initial_mode &&
+        hlpv_is_crossed(spec, transition, hlpv_set_point(&spec->input, 0.0), spec->initial)) {
+      return error_set(reader->error, STATUS_INVALID, pointer,
+                       "the start lies beyond the guard of /model/transitions/%d, which leaves the "
+                       "mode \"%.40s\": start on its other side, or in the mode \"%.40s\"",
+                       i, spec->mode[transition->from].name, spec->mode[transition->to].name);
+    }
+  }
+  return STATUS_OK;
+}
+
+static enum status check_samples(const struct reader *reader, const struct hlpv_spec *spec) {
+  double samples = spec->end * spec->sample_rate + 1.0;
+  if (samples <= HLPV_SAMPLES_MAX) {
+    return STATUS_OK;
+  }
+  return error_set(reader->error, STATUS_INVALID, "/sample_rate",
+                   "%.6g Hz over %.6g s make %.0f samples; at most %d are allowed, which \"%.4g "
+                   "Hz\" keeps to",
+                   spec->sample_rate, spec->end, samples, HLPV_SAMPLES_MAX,
+                   floor((HLPV_SAMPLES_MAX - 1) / spec->end * 1e3) / 1e3);
+}
+
+enum status reader_hlpv(const struct reader *reader, const json_t *document, struct job_spec *job) {
+  const json_t *model = json_object_get(document, "model");
+  struct hlpv_spec *spec = calloc(1, sizeof *spec);
+  if (!spec) {
+    return error_set(reader->error, STATUS_NO_MEMORY, NULL, "no memory for the model");
+  }
+  job->kind = JOB_HLPV;
+  job->hlpv = spec;
+  reader_copy(job->name, sizeof job->name, json_string_value(json_object_get(document, "name")));
+  job->timeout_s = reader_member(reader, document, "timeout", "s", 0.0);
+  spec->mass = reader_member(reader, model, "mass", "kg", 0.0);
+  spec->gamma = reader_member(reader, model, "gamma", "N/kPa", 0.0);
+  spec->rest_length = reader_member(reader, model, "rest_length", "mm", 0.0);
+  spec->end = reader_member(reader, document, "end", "s", 0.0);
+  spec->sample_rate = reader_member(reader, document, "sample_rate", "Hz", 0.0);
+  spec->tolerance = json_number_value(json_object_get(document, "tolerance"));
+  enum status status = read_modes(reader, json_object_get(model, "modes"), spec);
+  if (status == STATUS_OK) {
+    status = read_transitions(reader, json_object_get(model, "transitions"), spec);
+  }
+  if (status == STATUS_OK) {
+    status = read_initial(reader, json_object_get(document, "initial"), spec);
+  }
+  if (status == STATUS_OK) {
+    status = read_input(reader, json_object_get(document, "input"), &spec->input);
+  }
+  if (status == STATUS_OK) {
+    status = check_samples(reader, spec);
+  }
+  return status == STATUS_OK ? check_start(reader, spec) : status;
+}

@@ -1,0 +1,172 @@
+#include "solver/post/result_hlpv.h"
+
+#include <math.h>
+#include <sys/resource.h>
+#include "solver/base/clock.h"
+#include "solver/hlpv/simulate.h"
+
+static void set_real(json_t *object, const char *key, double value) {
+  if (isfinite(value)) {
+    json_object_set_new(object, key, json_real(value));
+  }
+}
+
+static void set_extension_ratio(json_t *object, const char *key, const struct hlpv_spec *spec,
+                                double h) {
+  if (spec->rest_length > 0.0) {
+    set_real(object, key, h / spec->rest_length);
+  }
+}
+
+/* ---- parts of the document ---------------------------------------------------------------- */
+
+static json_t *state_object(const double x[HLPV_STATES]) {
+  json_t *o = json_object();
+  set_real(o, "h_m", x[HLPV_H]);
+  set_real(o, "velocity_m_s", x[HLPV_VELOCITY]);
+  set_real(o, "pressure_Pa", x[HLPV_PRESSURE]);
+  return o;
+}
+
+static json_t *events_array(const struct hlpv_spec *spec, const struct hlpv_trajectory *t) {
+  json_t *events = json_array();
+  for (size_t i = 0; i < t->event_count; i++) {
+    const struct hlpv_event *event = &t->event[i];
+    const struct hlpv_transition *transition = &spec->transition[event->transition];
+    json_t *o = json_pack("{s:f, s:s, s:s, s:i, s:b}", "time_s", event->time, "from",
+                          spec->mode[transition->from].name, "to", spec->mode[transition->to].name,
+                          "transition", event->transition, "grazing", event->grazing);
+    json_object_set_new(o, "before", state_object(event->before));
+    json_object_set_new(o, "after", state_object(event->after));
+    json_array_append_new(events, o);
+  }
+  return events;
+}
+
+static json_t *final_object(const struct hlpv_spec *spec, const struct hlpv_trajectory *t) {
+  json_t *o = state_object(t->x);
+  set_real(o, "time_s", t->time);
+  json_object_set_new(o, "mode", json_string(spec->mode[t->mode].name));
+  set_extension_ratio(o, "extension_ratio", spec, t->x[HLPV_H]);
+  return o;
+}
+
+static json_t *samples_array(const struct hlpv_spec *spec, const struct hlpv_trajectory *t) {
+  json_t *samples = json_array();
+  for (size_t i = 0; i < t->sample_count; i++) {
+    const struct hlpv_sample *sample = &t->sample[i];
+    json_t *o = json_object();
+    set_real(o, "time_s", sample->time);
+    set_real(o, "set_point_kPa", 1e-3 * sample->set_point);
+    set_real(o, "h_mm", 1e3 * sample->x[HLPV_H]);
+    set_real(o, "velocity_m_s", sample->x[HLPV_VELOCITY]);
+    set_real(o, "pressure_kPa", 1e-3 * sample->x[HLPV_PRESSURE]);
+    set_extension_ratio(o, "extension_ratio", spec, sample->x[HLPV_H]);
+    json_object_set_new(o, "mode", json_string(spec->mode[sample->mode].name));
+    json_array_append_new(samples, o);
+  }
+  return samples;
+}
+
+static json_t *holds_array(const struct hlpv_spec *spec, const struct hlpv_trajectory *t) {
+  json_t *holds = json_array();
+  for (size_t i = 0; i < t->hold_count; i++) {
+    const struct hlpv_hold *hold = &t->hold[i];
+    json_t *o = json_object();
+    set_real(o, "start_s", hold->start);
+    set_real(o, "end_s", hold->end);
+    set_real(o, "set_point_kPa", 1e-3 * hold->set_point);
+    json_object_set_new(o, "mode", json_string(spec->mode[hold->mode].name));
+    json_object_set_new(o, "switches", json_integer(hold->switches));
+    set_real(o, "end_h_mm", 1e3 * hold->last[HLPV_H]);
+    set_real(o, "end_pressure_kPa", 1e-3 * hold->last[HLPV_PRESSURE]);
+    set_extension_ratio(o, "end_extension_ratio", spec, hold->last[HLPV_H]);
+    set_real(o, "steady_h_mm", 1e3 * hold->steady_h);
+    set_real(o, "steady_pressure_kPa", 1e-3 * hold->steady_pressure);
+    set_extension_ratio(o, "steady_extension_ratio", spec, hold->steady_h);
+    set_real(o, "steady_force_N", spec->gamma * hold->steady_pressure);
+    set_real(o, "settling_time_s", hold->settling);
+    set_real(o, "peak_speed_m_s", hold->peak_speed);
+    json_array_append_new(holds, o);
+  }
+  return holds;
+}
+
+static json_t *metrics_object(const struct hlpv_spec *spec, const struct hlpv_trajectory *t) {
+  json_t *o = json_object();
+  double settling = -INFINITY;
+  for (size_t i = 0; i < t->hold_count; i++) {
+    settling = fmax(settling, t->hold[i].settling);
+  }
+  set_extension_ratio(o, "extension_ratio", spec, t->highest[HLPV_H]);
+  set_extension_ratio(o, "final_extension_ratio", spec, t->x[HLPV_H]);
+  set_real(o, "max_h_mm", 1e3 * t->highest[HLPV_H]);
+  set_real(o, "min_h_mm", 1e3 * t->lowest[HLPV_H]);
+  set_real(o, "max_pressure_kPa", 1e-3 * t->highest[HLPV_PRESSURE]);
+  set_real(o, "peak_speed_m_s", t->peak_speed);
+  set_real(o, "output_force_N", spec->gamma * t->highest[HLPV_PRESSURE]);
+  set_real(o, "settling_time_s", settling);
+  json_object_set_new(o, "event_count", json_integer((json_int_t)t->event_count));
+  if (t->event_count > 0) {
+    set_real(o, "first_event_s", t->event[0].time);
+    set_real(o, "last_event_s", t->event[t->event_count - 1].time);
+    set_real(o, "trigger_pressure_kPa", 1e-3 * t->event[0].before[HLPV_PRESSURE]);
+  }
+  return o;
+}
+
+static json_t *warnings_array(const struct hlpv_trajectory *t) {
+  json_t *warnings = json_array();
+  for (int i = 0; i < t->warning_count; i++) {
+    json_array_append_new(warnings, json_string(t->warning[i]));
+  }
+  return warnings;
+}
+
+static json_t *statistics_object(const struct hlpv_trajectory *t, double wall_s, double cpu_s) {
+  struct rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  return json_pack("{s:I, s:I, s:I, s:f, s:f, s:f}", "steps", (json_int_t)t->counts.steps,
+                   "evaluations", (json_int_t)t->counts.evaluations, "restarts",
+                   (json_int_t)t->counts.restarts, "wall_s", wall_s, "cpu_s", cpu_s,
+                   "peak_memory_MB", 1e-3 * 1.024 * (double)usage.ru_maxrss);
+}
+
+/* ---- the job ------------------------------------------------------------------------------ */
+
+enum status result_hlpv(const struct job_spec *spec, const struct result_hlpv_options *options,
+                        json_t **document, enum status *ending, struct error *error) {
+  double wall = clock_wall_s(), cpu = clock_cpu_s();
+  struct hlpv_options simulation = {
+      .deadline_s = spec->timeout_s > 0 ? wall + spec->timeout_s : 0,
+      .cancelled = options->cancelled,
+      .events = options->events,
+  };
+  struct hlpv_trajectory t;
+  struct error end = {.status = STATUS_OK};
+  *document = NULL;
+  *ending = hlpv_simulate(spec->hlpv, &simulation, &t, &end);
+  double wall_s = clock_wall_s() - wall, cpu_s = clock_cpu_s() - cpu;
+  bool good = *ending == STATUS_OK;
+  enum status status = STATUS_OK;
+  if (*ending == STATUS_NO_MEMORY || *ending == STATUS_INTERNAL) {
+    *error = end;
+    status = *ending;
+    goto done;
+  }
+  *document =
+      json_pack("{s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:[], s:o, s:{s:s, s:s}}",
+                "status", good ? "succeeded" : "diverged", "reason",
+                good ? "" : status_word(*ending), "message", good ? "" : end.message, "kind",
+                "hlpv", "name", spec->name, "metrics", metrics_object(spec->hlpv, &t), "samples",
+                samples_array(spec->hlpv, &t), "events", events_array(spec->hlpv, &t), "final",
+                final_object(spec->hlpv, &t), "holds", holds_array(spec->hlpv, &t), "warnings",
+                warnings_array(&t), "artifacts", "statistics", statistics_object(&t, wall_s, cpu_s),
+                "provenance", "version", PNEULAB_VERSION, "spec_hash", spec->hash);
+  if (!*document) {
+    status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the result document");
+  }
+done:
+  hlpv_trajectory_release(&t);
+  return status;
+}
