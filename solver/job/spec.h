@@ -7,7 +7,14 @@
 #include <stddef.h>
 #include "solver/base/error.h"
 
-enum job_kind { JOB_RESPONSE, JOB_VERIFY, JOB_STUDY, JOB_FIT_MATERIAL, JOB_MATERIAL_CURVE, JOB_HLPV };
+enum job_kind {
+  JOB_RESPONSE,
+  JOB_VERIFY,
+  JOB_STUDY,
+  JOB_FIT_MATERIAL,
+  JOB_MATERIAL_CURVE,
+  JOB_HLPV
+};
 
 /* ---- material --------------------------------------------------------------------------- */
 
