@@ -172,9 +172,8 @@ static void warn_of_coefficients(const struct fit *fit) {
     bool exponent = fit_coefficient_is_exponent(&fit->spec->fit, i);
     double unit = exponent ? 1.0 : 1e-6, half_width = regression_half_width(r, i);
     if (r->at_bound[i]) {
-      warn(fit,
-           json_sprintf("%s is held at its bound, %.6g%s: the curve asks for a value beyond it",
-                        name, unit * r->coefficient[i], exponent ? "" : " MPa"));
+      warn(fit, json_sprintf("%s is held at its bound, %.6g%s", name, unit * r->coefficient[i],
+                             exponent ? "" : " MPa"));
     } else if (!(half_width < fabs(r->coefficient[i]))) {
       warn(fit,
            json_sprintf("the curve does not determine %s: %.4g +- %.4g%s (95 %%); fewer terms "
@@ -213,10 +212,12 @@ static void find_range(struct fit *fit) {
 
 /* Adds what only a fit that has settled can tell. */
 static enum status add_material(const struct fit *fit, json_t *document) {
-  double stretch = fmax(1.0 + fit->high, 1.0 / (1.0 + fit->low));
+  /* The specimen has seen these stretches along its length, and their inverse roots across. */
+  double low = fmin(1.0 + fit->low, 1.0 / sqrt(1.0 + fit->high));
+  double high = fmax(1.0 + fit->high, 1.0 / sqrt(1.0 + fit->low));
   json_t *stability = NULL;
-  enum status status = stability_report(&fit->regression.material, 1.0 / stretch, stretch,
-                                        &stability, fit->warnings);
+  enum status status =
+      stability_report(&fit->regression.material, low, high, &stability, fit->warnings);
   if (status == STATUS_OK &&
       (json_object_set(document, "stability", stability) != 0 ||
        json_object_set_new(document, "material", material_object(fit)) != 0)) {

@@ -360,10 +360,11 @@ START_TEST(the_documents_of_the_manual_are_valid) {
     struct error error;
     ck_assert_msg(job_spec_read(at, (size_t)(end - at), &spec, &error) == STATUS_OK, "%s: %s",
                   error.pointer, error.message);
+    job_spec_release(&spec);
     at = end + 3;
     documents++;
   }
-  ck_assert_int_eq(documents, 6);
+  ck_assert_int_eq(documents, 9);
 }
 END_TEST
 
