@@ -190,6 +190,17 @@ static json_t *metrics(const struct study *study, const struct study_run_figures
                    "computed", (int)figures->computed, "resumed", (int)figures->resumed);
 }
 
+/* Processor time of the computations behind the members, in this run or an earlier one. */
+static double members_cpu_s(const struct study *study, const json_t *members) {
+  double sum = 0;
+  for (size_t i = 0; i < study->count; i++) {
+    const json_t *statistics = json_object_get(json_array_get(members, i), "statistics");
+    bool own = study->member[i].same_as < 0 && study->member[i].mirror_of < 0;
+    sum += own ? json_number_value(json_object_get(statistics, "cpu_s")) : 0;
+  }
+  return sum;
+}
+
 static const char *ending_message(enum status ending) {
   return ending == STATUS_OK         ? ""
          : ending == STATUS_DIVERGED ? "not a single member could be solved"
@@ -207,13 +218,14 @@ json_t *study_document(const struct job_spec *spec, const struct study *study,
   json_t *ranking =
       study->ranking.asked ? ranking_document(&study->ranking, members, warnings) : NULL;
   json_t *document = json_pack(
-      "{s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:[], s:{s:f, s:f}, s:{s:s, s:s}}",
+      "{s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:[], s:{s:f, s:f, s:f}, s:{s:s, s:s}}",
       "status", ending == STATUS_OK ? "succeeded" : "diverged", "reason",
       ending == STATUS_OK ? "" : status_word(ending), "message", ending_message(ending), "kind",
       "study", "name", spec->name, "metrics", metrics(study, figures, members), "parameters",
       parameters(spec->document), "samples", table(members), "members", members, "warnings",
       warnings, "artifacts", "statistics", "wall_s", figures->wall_s, "cpu_s", figures->cpu_s,
-      "provenance", "version", PNEULAB_VERSION, "spec_hash", spec->hash);
+      "members_cpu_s", members_cpu_s(study, members), "provenance", "version", PNEULAB_VERSION,
+      "spec_hash", spec->hash);
   if (document && ranking) {
     json_object_set(document, "ranking", ranking);
   }

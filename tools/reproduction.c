@@ -1,0 +1,217 @@
+/* Runs the jobs of the published studies and writes docs/REPRODUCTION.md with their results beside
+ * the published values.
+ *
+ * usage: reproduction [--only NAME] [--jobs N] [--no-runs] --solver FILE --source DIR --build DIR
+ *                     [--document FILE] [--figures DIR]
+ * Of SOURCE: jobs/, docs/REPRODUCTION.in.md and docs/reproduction.json with the published values;
+ * the document and its figures go there, too, unless told otherwise. Results go to
+ * BUILD/FOLDER/JOB/, from which an interrupted run goes on. --only runs one folder or job; the
+ * document then has what is there. Lines of the template:
+ *   @VALUES paper@ @TRENDS paper@ @FIGURES paper@ @RANKING@ @RUNS@ */
+#include <getopt.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "server/plot/plot.h"
+#include "solver/base/clock.h"
+#include "tools/reproduction.h"
+#include "tools/template.h"
+
+enum { FIGURE_WIDTH = 760, FIGURE_HEIGHT = 520 };
+
+struct arguments {
+  const char *only, *solver, *source, *build, *document, *figures;
+  int processes;
+  bool no_runs;
+};
+
+/* What the sections are printed from. */
+struct content {
+  const struct works *works;
+  const json_t *data;
+};
+
+/* ---- pictures ----------------------------------------------------------------------------- */
+
+static bool write_png(const struct work *work, const json_t *result, const char *plot,
+                      const char *path) {
+  struct plot_input input = {.result = result,
+                             .artifacts_dir = work->directory,
+                             .title = json_string_value(json_object_get(result, "name")),
+                             .spec_hash = work->hash};
+  unsigned char *png = NULL;
+  size_t size = 0;
+  struct error error = {.status = STATUS_OK};
+  if (plot_render(plot, &input, 1, FIGURE_WIDTH, FIGURE_HEIGHT, &png, &size, &error) != STATUS_OK) {
+    fprintf(stderr, "reproduction: %s: %s\n", path, error.message);
+    return false;
+  }
+  FILE *file = fopen(path, "wb");
+  bool good = file && fwrite(png, 1, size, file) == size;
+  good = file && fclose(file) == 0 && good;
+  if (!good) {
+    perror(path);
+  }
+  free(png);
+  return good;
+}
+
+static const struct work *work_of(const struct works *works, const char *from) {
+  size_t length = strcspn(from, "#");
+  for (int w = 0; w < works->count; w++) {
+    const struct work *work = &works->item[w];
+    if (strlen(work->name) == length && strncmp(work->name, from, length) == 0) {
+      return work;
+    }
+  }
+  return NULL;
+}
+
+static bool write_figure(const struct works *works, const json_t *entry, const char *directory) {
+  const char *from = json_string_value(json_object_get(entry, "from"));
+  const char *plot = json_string_value(json_object_get(entry, "plot"));
+  const char *name = json_string_value(json_object_get(entry, "file"));
+  const struct work *work = from ? work_of(works, from) : NULL;
+  const json_t *result = work ? works_result(works, from) : NULL;
+  char path[WORK_PATH];
+  if (!result || !plot || !name) {
+    return true; /* the document says that it is missing */
+  }
+  snprintf(path, sizeof path, "%s/%s.png", directory, name);
+  return write_png(work, result, plot, path);
+}
+
+bool write_plots(const struct works *works, const json_t *data, const char *figures) {
+  bool good = true;
+  size_t index;
+  json_t *entry;
+  for (int w = 0; w < works->count; w++) {
+    const struct work *work = &works->item[w];
+    const char *const *names = plot_names(json_string_value(json_object_get(work->result, "kind")));
+    for (; work->result && *names; names++) {
+      char path[WORK_PATH + 64];
+      snprintf(path, sizeof path, "%s/%s.png", work->directory, *names);
+      good = write_png(work, work->result, *names, path) && good;
+    }
+  }
+  json_array_foreach(json_object_get(data, "figures"), index, entry) {
+    good = write_figure(works, entry, figures) && good;
+  }
+  return good;
+}
+
+/* ---- the document ------------------------------------------------------------------------- */
+
+/* The paper that a line "@SECTION paper@" speaks of, in `paper`; false for another line. */
+static bool is_section(const char *line, const char *section, char paper[64]) {
+  char format[40];
+  snprintf(format, sizeof format, "@%s %%63[a-z-]@", section);
+  return sscanf(line, format, paper) == 1;
+}
+
+static bool print_section(FILE *out, const char *line, const void *context) {
+  const struct content *content = context;
+  char paper[64];
+  if (is_section(line, "VALUES", paper)) {
+    print_values(out, content->works, content->data, paper);
+  } else if (is_section(line, "TRENDS", paper)) {
+    print_trends(out, content->works, content->data, paper);
+  } else if (is_section(line, "FIGURES", paper)) {
+    print_figures(out, content->works, content->data, paper);
+  } else if (strcmp(line, "@RANKING@\n") == 0) {
+    print_ranking(out, content->works, content->data);
+  } else if (strcmp(line, "@RUNS@\n") == 0) {
+    print_runs(out, content->works);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+static bool write_document(const struct arguments *a, const struct works *works) {
+  char path[WORK_PATH], template[WORK_PATH], document[WORK_PATH], figures[WORK_PATH];
+  snprintf(path, sizeof path, "%s/docs/reproduction.json", a->source);
+  snprintf(template, sizeof template, "%s/docs/REPRODUCTION.in.md", a->source);
+  snprintf(document, sizeof document, "%s/docs/REPRODUCTION.md", a->source);
+  snprintf(figures, sizeof figures, "%s/docs/figures/reproduction", a->source);
+  json_error_t error;
+  json_t *data = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
+  if (!data) {
+    fprintf(stderr, "reproduction: %s:%d: %s\n", path, error.line, error.text);
+    return false;
+  }
+  const char *pictures = a->figures ? a->figures : figures;
+  struct content content = {works, data};
+  mkdir(pictures, 0777);
+  bool drawn = write_plots(works, data, pictures);
+  bool good =
+      template_fill(template, a->document ? a->document : document, print_section, &content);
+  json_decref(data);
+  return good && drawn;
+}
+
+/* ---- the program -------------------------------------------------------------------------- */
+
+static bool parse(int argc, char **argv, struct arguments *a) {
+  static const struct option options[] = {{"only", required_argument, NULL, 'o'},
+                                          {"jobs", required_argument, NULL, 'j'},
+                                          {"no-runs", no_argument, NULL, 'n'},
+                                          {"solver", required_argument, NULL, 's'},
+                                          {"source", required_argument, NULL, 'S'},
+                                          {"build", required_argument, NULL, 'b'},
+                                          {"document", required_argument, NULL, 'd'},
+                                          {"figures", required_argument, NULL, 'f'},
+                                          {0}};
+  int option;
+  while ((option = getopt_long(argc, argv, "", options, NULL)) != -1) {
+    const char **place = option == 'o'   ? &a->only
+                         : option == 's' ? &a->solver
+                         : option == 'S' ? &a->source
+                         : option == 'b' ? &a->build
+                         : option == 'd' ? &a->document
+                         : option == 'f' ? &a->figures
+                                         : NULL;
+    if (place) {
+      *place = optarg;
+    } else if (option == 'j') {
+      a->processes = atoi(optarg);
+    } else if (option == 'n') {
+      a->no_runs = true;
+    } else {
+      return false;
+    }
+  }
+  return optind == argc && a->solver && a->source && a->build && a->processes >= 1;
+}
+
+/* Whether --only names anything. */
+static bool names_something(const struct works *works, const char *only) {
+  for (int w = 0; w < works->count; w++) {
+    if (work_is_wanted(&works->item[w], only)) {
+      return true;
+    }
+  }
+  fprintf(stderr, "reproduction: there is no job and no folder \"%s\"\n", only ? only : "");
+  return false;
+}
+
+int main(int argc, char **argv) {
+  long cores = sysconf(_SC_NPROCESSORS_ONLN);
+  struct arguments a = {.processes = cores > 0 ? (int)cores : 1};
+  struct works works;
+  double start_s = clock_wall_s();
+  if (!parse(argc, argv, &a)) {
+    fputs("usage: reproduction [--only NAME] [--jobs N] [--no-runs] --solver FILE --source DIR\n"
+          "                    --build DIR [--document FILE] [--figures DIR]\n",
+          stderr);
+    return EXIT_FAILURE;
+  }
+  bool good = works_find(&works, a.source, a.build) && names_something(&works, a.only) &&
+              (a.no_runs || works_run(&works, a.only, a.solver, a.processes)) &&
+              write_document(&a, &works);
+  fprintf(stderr, "reproduction: %.1f min\n", (clock_wall_s() - start_s) / 60);
+  works_release(&works);
+  return good ? EXIT_SUCCESS : EXIT_FAILURE;
+}

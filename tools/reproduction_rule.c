@@ -1,0 +1,116 @@
+/* Our counterparts of published values. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tools/reproduction.h"
+
+static const struct work *find_work(const struct works *works, const char *name, size_t length) {
+  for (int w = 0; w < works->count; w++) {
+    if (strlen(works->item[w].name) == length && strncmp(works->item[w].name, name, length) == 0) {
+      return &works->item[w];
+    }
+  }
+  return NULL;
+}
+
+const json_t *works_result(const struct works *works, const char *from) {
+  size_t length = strcspn(from, "#");
+  const struct work *work = find_work(works, from, length);
+  if (!work || !from[length]) {
+    return work ? work->result : NULL;
+  }
+  size_t index;
+  json_t *member;
+  json_array_foreach(json_object_get(work->result, "members"), index, member) {
+    const char *name = json_string_value(json_object_get(member, "name"));
+    if (name && strcmp(name, from + length + 1) == 0) {
+      return member;
+    }
+  }
+  return NULL;
+}
+
+/* The value that `pointer` (no escapes) with `suffix` at its end names, or NULL. */
+static const json_t *at_pointer(const json_t *value, const char *pointer, const char *suffix) {
+  char part[128];
+  while (value && *pointer == '/') {
+    size_t length = strcspn(pointer + 1, "/");
+    bool last = !pointer[1 + length];
+    snprintf(part, sizeof part, "%.*s%s", (int)length, pointer + 1, last ? suffix : "");
+    value = json_is_array(value) ? json_array_get(value, strtoul(part, NULL, 10))
+                                 : json_object_get(value, part);
+    pointer += 1 + length;
+  }
+  return value;
+}
+
+static double number_of(const json_t *object, const char *key) {
+  const json_t *value = json_object_get(object, key);
+  return json_is_number(value) ? json_number_value(value) : NAN;
+}
+
+/* Value of `y` where `x` first passes `at`, linear between samples; NAN when it does not. */
+static double interpolate(const json_t *samples, const char *x, const char *y, double at) {
+  for (size_t i = 0; i + 1 < json_array_size(samples); i++) {
+    const json_t *a = json_array_get(samples, i), *b = json_array_get(samples, i + 1);
+    double x0 = number_of(a, x), x1 = number_of(b, x);
+    if ((x0 - at) * (x1 - at) <= 0 && x0 != x1) {
+      double t = (at - x0) / (x1 - x0);
+      return (1 - t) * number_of(a, y) + t * number_of(b, y);
+    }
+  }
+  return NAN;
+}
+
+static double extreme(const json_t *samples, const char *key, bool largest) {
+  double found = NAN;
+  size_t index;
+  json_t *sample;
+  json_array_foreach(samples, index, sample) {
+    double value = number_of(sample, key);
+    found = isnan(found) || (largest ? value > found : value < found) ? value : found;
+  }
+  return found;
+}
+
+static double from_samples(const json_t *result, const json_t *rule, const char *key) {
+  const json_t *samples = json_object_get(result, "samples");
+  const char *end = json_string_value(json_object_get(rule, "extreme"));
+  double at = number_of(rule, "at_kPa"), reaches = number_of(rule, "reaches");
+  return end          ? extreme(samples, key, strcmp(end, "largest") == 0)
+         : !isnan(at) ? interpolate(samples, "pressure_kPa", key, at)
+                      : interpolate(samples, key, "pressure_kPa", reaches);
+}
+
+struct finding finding_from(const struct works *works, const json_t *rule) {
+  struct finding finding = {.error = -1};
+  const char *from = json_string_value(json_object_get(rule, "from"));
+  const char *pointer = json_string_value(json_object_get(rule, "value"));
+  const char *key = json_string_value(json_object_get(rule, "key"));
+  double factor = number_of(rule, "factor");
+  factor = isnan(factor) ? 1 : factor;
+  const json_t *result = from ? works_result(works, from) : NULL;
+  if (!result) {
+    snprintf(finding.missing, sizeof finding.missing, "missing: %s has not been run",
+             from ? from : "no job");
+    return finding;
+  }
+  const json_t *value = pointer ? at_pointer(result, pointer, "") : NULL;
+  finding.value = factor * (key                     ? from_samples(result, rule, key)
+                            : json_is_number(value) ? json_number_value(value)
+                                                    : NAN);
+  finding.found = isfinite(finding.value);
+  const json_t *error = pointer ? at_pointer(result, pointer, "_error") : NULL;
+  finding.error = json_is_number(error) ? fabs(factor) * json_number_value(error) : -1;
+  const char *status = json_string_value(json_object_get(result, "status"));
+  const char *reason = json_string_value(json_object_get(result, "reason"));
+  if (pointer && status && strcmp(status, "succeeded") != 0) {
+    finding.found = false; /* metrics of a path that was cut short are those of another load */
+  }
+  if (!finding.found) {
+    snprintf(finding.missing, sizeof finding.missing, "missing: %s%s%s", status ? status : "?",
+             reason && reason[0] ? ", " : "", reason ? reason : "");
+  }
+  return finding;
+}
