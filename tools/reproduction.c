@@ -31,16 +31,19 @@ struct arguments {
 struct content {
   const struct works *works;
   const json_t *data;
+  const char *figures; /* directory of the pictures */
 };
 
 /* ---- pictures ----------------------------------------------------------------------------- */
 
+/* `metric`: what the plots "metric" and "mesh" show; NULL leaves the choice to them. */
 static bool write_png(const struct work *work, const json_t *result, const char *plot,
-                      const char *path) {
+                      const char *metric, const char *path) {
   struct plot_input input = {.result = result,
                              .artifacts_dir = work->directory,
                              .title = json_string_value(json_object_get(result, "name")),
-                             .spec_hash = work->hash};
+                             .spec_hash = work->hash,
+                             .metric = metric};
   unsigned char *png = NULL;
   size_t size = 0;
   struct error error = {.status = STATUS_OK};
@@ -76,11 +79,15 @@ static bool write_figure(const struct works *works, const json_t *entry, const c
   const struct work *work = from ? work_of(works, from) : NULL;
   const json_t *result = work ? works_result(works, from) : NULL;
   char path[WORK_PATH];
-  if (!result || !plot || !name) {
-    return true; /* the document says that it is missing */
+  if (!plot || !name) {
+    return true;
   }
   snprintf(path, sizeof path, "%s/%s.png", directory, name);
-  return write_png(work, result, plot, path);
+  unlink(path);
+  if (!result) {
+    return true; /* the document says that it is missing */
+  }
+  return write_png(work, result, plot, json_string_value(json_object_get(entry, "metric")), path);
 }
 
 bool write_plots(const struct works *works, const json_t *data, const char *figures) {
@@ -89,11 +96,14 @@ bool write_plots(const struct works *works, const json_t *data, const char *figu
   json_t *entry;
   for (int w = 0; w < works->count; w++) {
     const struct work *work = &works->item[w];
-    const char *const *names = plot_names(json_string_value(json_object_get(work->result, "kind")));
-    for (; work->result && *names; names++) {
+    const char *names[PLOT_NAMES] = {NULL};
+    if (work->result) {
+      plot_names_for(json_string_value(json_object_get(work->result, "kind")), work->result, names);
+    }
+    for (size_t n = 0; n < PLOT_NAMES && names[n]; n++) {
       char path[WORK_PATH + 64];
-      snprintf(path, sizeof path, "%s/%s.png", work->directory, *names);
-      good = write_png(work, work->result, *names, path) && good;
+      snprintf(path, sizeof path, "%s/%s.png", work->directory, names[n]);
+      good = write_png(work, work->result, names[n], NULL, path) && good;
     }
   }
   json_array_foreach(json_object_get(data, "figures"), index, entry) {
@@ -119,7 +129,7 @@ static bool print_section(FILE *out, const char *line, const void *context) {
   } else if (is_section(line, "TRENDS", paper)) {
     print_trends(out, content->works, content->data, paper);
   } else if (is_section(line, "FIGURES", paper)) {
-    print_figures(out, content->works, content->data, paper);
+    print_figures(out, content->data, paper, content->figures);
   } else if (strcmp(line, "@RANKING@\n") == 0) {
     print_ranking(out, content->works, content->data);
   } else if (strcmp(line, "@RUNS@\n") == 0) {
@@ -143,7 +153,7 @@ static bool write_document(const struct arguments *a, const struct works *works)
     return false;
   }
   const char *pictures = a->figures ? a->figures : figures;
-  struct content content = {works, data};
+  struct content content = {works, data, pictures};
   mkdir(pictures, 0777);
   bool drawn = write_plots(works, data, pictures);
   bool good =

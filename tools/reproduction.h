@@ -58,14 +58,15 @@ struct finding {
  *   "factor" to be multiplied with; 1 unless given */
 struct finding finding_from(const struct works *works, const json_t *rule);
 
-/* Draws every plot that a result has, into its directory, and the listed ones into `figures`. */
+/* Draws every plot that a result has, into its directory, and the listed ones into `figures`, where
+ * none stays that could not be drawn. */
 bool write_plots(const struct works *works, const json_t *data, const char *figures);
 
 /* Sections of the document. */
 void print_runs(FILE *out, const struct works *works);
 void print_values(FILE *out, const struct works *works, const json_t *data, const char *paper);
 void print_trends(FILE *out, const struct works *works, const json_t *data, const char *paper);
-void print_figures(FILE *out, const struct works *works, const json_t *data, const char *paper);
+void print_figures(FILE *out, const json_t *data, const char *paper, const char *figures);
 void print_ranking(FILE *out, const struct works *works, const json_t *data);
 
 #endif

@@ -1,6 +1,7 @@
 /* The sections of docs/REPRODUCTION.md. */
 #include <math.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "tools/reproduction.h"
 
@@ -197,18 +198,20 @@ void print_ranking(FILE *out, const struct works *works, const json_t *data) {
 
 /* ---- figures and runs --------------------------------------------------------------------- */
 
-void print_figures(FILE *out, const struct works *works, const json_t *data, const char *paper) {
+void print_figures(FILE *out, const json_t *data, const char *paper, const char *figures) {
   size_t index;
   json_t *entry;
   json_array_foreach(json_object_get(data, "figures"), index, entry) {
     if (!is_of(entry, paper)) {
       continue;
     }
-    if (works_result(works, text_of(entry, "from"))) {
+    char path[WORK_PATH];
+    snprintf(path, sizeof path, "%s/%s.png", figures, text_of(entry, "file"));
+    if (access(path, R_OK) == 0) {
       fprintf(out, "![%s](figures/reproduction/%s.png)\n\n*%s*\n\n", text_of(entry, "caption"),
               text_of(entry, "file"), text_of(entry, "caption"));
     } else {
-      fprintf(out, "*%s*: missing, %s has not been run.\n\n", text_of(entry, "caption"),
+      fprintf(out, "*%s*: missing, %s could not be drawn.\n\n", text_of(entry, "caption"),
               text_of(entry, "from"));
     }
   }
