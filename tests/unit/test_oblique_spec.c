@@ -1,5 +1,7 @@
 /* From the text of a job with two oblique rows to its spec: geometry, pressures, refusals. */
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "tests/unit/suite.h"
@@ -130,6 +132,27 @@ START_TEST(one_row_has_one_pressure) {
 }
 END_TEST
 
+/* The published design, in both load cases. */
+START_TEST(job_files_are_valid) {
+  static const char *const files[] = {"both-45", "one-45"};
+  const char *source = getenv("srcdir");
+  static char text[1 << 14];
+  char path[600];
+  snprintf(path, sizeof path, "%s/jobs/ptba/%s.json", source ? source : ".", files[_i]);
+  FILE *file = fopen(path, "rb");
+  ck_assert_msg(file != NULL, "%s cannot be opened", path);
+  size_t size = fread(text, 1, sizeof text, file);
+  fclose(file);
+  struct job_spec spec;
+  struct error error = {.status = STATUS_OK};
+  ck_assert_msg(job_spec_read(text, size, &spec, &error) == STATUS_OK, "%s", error.message);
+  suite_check_near(spec.oblique.length, 0.26);
+  suite_check_near(spec.load.pressure_to, 80e3);
+  ck_assert_double_eq(spec.load.cavity_share[1], _i == 0 ? 1 : 0);
+  ck_assert_int_eq(spec.half_model, _i == 0);
+}
+END_TEST
+
 /* Only the material of this family can be varied. */
 START_TEST(dimensions_are_no_parameters) {
   struct job_spec spec;
@@ -151,6 +174,7 @@ int main(void) {
   tcase_add_loop_test(tcase, rows_have_their_pressures, 0, sizeof loads / sizeof *loads);
   tcase_add_loop_test(tcase, refuses, 0, sizeof refusals / sizeof *refusals);
   tcase_add_test(tcase, one_row_has_one_pressure);
+  tcase_add_loop_test(tcase, job_files_are_valid, 0, 2);
   tcase_add_test(tcase, dimensions_are_no_parameters);
   suite_add_tcase(suite, tcase);
   return suite_run(suite);
