@@ -25,6 +25,8 @@ const CAPTIONS = {
   twist: 'Twist angle of every member against pressure',
   contraction: 'Contraction of every member against pressure',
   mesh: 'Convergence with the mesh',
+  fit: 'Stress against strain, measured and fitted',
+  stress: 'Stress of the material against stretch',
   suction: 'Suction and bending against the number of suckers',
 };
 

@@ -41,6 +41,7 @@ struct chart_series {
   enum chart_marker marker;
   enum chart_dash dash;
   bool hollow;          /* markers are rings */
+  bool small;           /* markers are half as large, for crowds of points */
   const double *errors; /* borrowed: half the height of an error bar at each point, NaN for none;
                          * NULL: no bars */
   const double *band;   /* borrowed: half the height of a light band about the line at each point,

@@ -61,6 +61,13 @@ enum status draw_mesh(struct canvas *canvas, const struct plot_input *inputs, si
 enum status draw_suction(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                          struct error *error);
 
+/* A tensile curve and the law through it, with its coefficients. */
+enum status draw_fit(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                     struct error *error);
+/* Engineering stresses of a material in three deformations against stretch. */
+enum status draw_stress(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                        struct error *error);
+
 /* Bending angle against pressure of several jobs. */
 enum status draw_overlay(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                          struct error *error);

@@ -4,6 +4,7 @@
 
 #include "server/plot/data.h"
 #include "server/plot/draw.h"
+#include "server/plot/quantity.h"
 
 /* Curves that were measured, and what differs from them. */
 struct comparison {
@@ -22,11 +23,17 @@ static void comparison_release(struct comparison *c) {
   free(c->errors);
 }
 
+/* The angle that was measured. */
+static const char *metric_of(const json_t *result) {
+  const char *metric = json_string_value(json_object_get(result, "measured_metric"));
+  return metric ? metric : "bending_angle_deg";
+}
+
 static enum status comparison_read(const json_t *result, struct comparison *c,
                                    struct error *error) {
   const json_t *list = json_object_get(result, "measured");
   size_t listed = json_array_size(list);
-  enum status status = data_samples(result, "pressure_kPa", "bending_angle_deg", &c->simulated,
+  enum status status = data_samples(result, "pressure_kPa", metric_of(result), &c->simulated,
                                     &c->simulated_count, error);
   c->measured = calloc(listed + 1, sizeof *c->measured);
   c->differences = calloc(listed + 1, sizeof *c->differences);
@@ -61,11 +68,13 @@ enum status draw_measured(struct canvas *canvas, const struct plot_input *inputs
   static const double shares[2] = {0.66, 0.34};
   (void)count;
   struct comparison c = {.simulated = NULL};
-  char subtitle[DATA_HEADING], notice[DATA_HEADING], name[140], worst[TICKS_TEXT], mean[TICKS_TEXT];
+  char y_label[160], subtitle[DATA_HEADING], notice[DATA_HEADING], name[140], worst[TICKS_TEXT],
+      mean[TICKS_TEXT];
   enum status status = comparison_read(inputs[0].result, &c, error);
   if (status != STATUS_OK) {
     goto done;
   }
+  quantity_label(metric_of(inputs[0].result), y_label, sizeof y_label);
   data_subtitle(&inputs[0], subtitle);
   data_notice(inputs[0].result, notice);
   ticks_number(c.largest, 2, worst);
@@ -94,7 +103,7 @@ enum status draw_measured(struct canvas *canvas, const struct plot_input *inputs
                                    .subtitle = subtitle,
                                    .notice = notice,
                                    .x_label = "Pressure (kPa)",
-                                   .y_label = "Bending angle (°)",
+                                   .y_label = y_label,
                                    .from_zero = true,
                                    .series = curves,
                                    .series_count = 2,

@@ -36,6 +36,8 @@ static const struct entry entries[] = {
     {"contraction", "study", draw_contraction, offer_contraction},
     {"mesh", "study", draw_mesh, offer_mesh},
     {"suction", "study", draw_suction, offer_suction},
+    {"fit", "fit-material", draw_fit, NULL},
+    {"stress", "material-curve", draw_stress, NULL},
     {"overlay", NULL, draw_overlay, NULL},
 };
 
@@ -45,12 +47,16 @@ const char *const *plot_names(const char *kind) {
   static const char *const response[] = {"angle", "midline", "tip", "surface", NULL};
   static const char *const verify[] = {"convergence", "curve", NULL};
   static const char *const study[] = {"curves", NULL};
+  static const char *const fit[] = {"fit", NULL};
+  static const char *const curve[] = {"stress", NULL};
   static const char *const none[] = {NULL};
-  return !kind                           ? none
-         : strcmp(kind, "response") == 0 ? response
-         : strcmp(kind, "verify") == 0   ? verify
-         : strcmp(kind, "study") == 0    ? study
-                                         : none;
+  return !kind                                 ? none
+         : strcmp(kind, "response") == 0       ? response
+         : strcmp(kind, "verify") == 0         ? verify
+         : strcmp(kind, "study") == 0          ? study
+         : strcmp(kind, "fit-material") == 0   ? fit
+         : strcmp(kind, "material-curve") == 0 ? curve
+                                               : none;
 }
 
 void plot_names_for(const char *kind, const json_t *result, const char *names[PLOT_NAMES]) {

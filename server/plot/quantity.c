@@ -49,6 +49,8 @@ void quantity_name(const char *key, char *text, size_t size) {
                                          {"cai_rad_per_m_kPa", "CAI"},
                                          {"bending_angle_deg", "Bending angle"},
                                          {"twist_angle_deg", "Twist angle"},
+                                         {"chord_angle_deg", "Angle of the chord"},
+                                         {"end_face_angle_deg", "Angle of the end face"},
                                          {"contraction_pct", "Contraction of the reach"}};
   char words[100];
   const struct suffix *suffix = find_suffix(key);

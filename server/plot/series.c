@@ -73,7 +73,7 @@ static void draw_strokes(struct canvas *canvas, enum chart_marker marker, struct
 
 static void draw_marker(struct canvas *canvas, const struct chart_series *series, struct point at) {
   cairo_t *cr = canvas->cr;
-  double r = (series->hollow ? 4.2 : 3.6) * canvas->unit;
+  double r = (series->hollow ? 4.2 : series->small ? 1.8 : 3.6) * canvas->unit;
   if (series->marker == MARKER_NONE) {
     return;
   }
@@ -83,7 +83,7 @@ static void draw_marker(struct canvas *canvas, const struct chart_series *series
   }
   /* a white rim keeps neighbouring markers and crossing lines apart */
   canvas_set_colour(canvas, colour_paper);
-  cairo_set_line_width(cr, (series->hollow ? 3.6 : 1.6) * canvas->unit);
+  cairo_set_line_width(cr, (series->hollow ? 3.6 : series->small ? 0.4 : 1.6) * canvas->unit);
   cairo_stroke_preserve(cr);
   if (series->hollow) {
     cairo_fill_preserve(cr);
@@ -113,6 +113,10 @@ static void draw_band(struct canvas *canvas, const struct frame *frame,
 static void draw_errors(struct canvas *canvas, const struct frame *frame,
                         const struct chart_series *series) {
   double cap = 4 * canvas->unit;
+  if (series->style == STYLE_COLUMNS) {
+    double slot = frame->area.width / (frame->x_max - frame->x_min);
+    cap = fmin(cap, 0.4 * series->width * slot);
+  }
   /* on a column of its own colour a bar could not be seen */
   canvas_set_colour(canvas, series->style == STYLE_COLUMNS ? colour_ink : series->colour);
   for (size_t i = 0; i < series->count; i++) {

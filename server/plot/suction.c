@@ -1,15 +1,14 @@
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "server/plot/draw.h"
 #include "server/plot/members.h"
 
-/* Suckers of a member: its metric, or else the list that the study gives it; NaN when neither. */
-static double sucker_count(const struct member *member) {
-  double count = member_metric(member, "sucker_count");
-  const json_t *values = json_object_get(member->object, "values");
-  const json_t *list = json_object_get(values, "/actuator/suckers");
-  return isfinite(count) ? count : json_is_array(list) ? (double)json_array_size(list) : NAN;
+/* A metric of a member; one that has no suckers has neither their number nor their force. */
+static double metric_or_zero(const struct member *member, const char *key) {
+  double value = member_metric(member, key);
+  return isfinite(value) || strncmp(key, "suc", 3) != 0 ? value : 0;
 }
 
 static int compare_points(const void *left, const void *right) {
@@ -24,7 +23,7 @@ static size_t read_points(const struct members *members, const char *key, struct
   *line = true;
   for (size_t i = 0; i < members->count; i++) {
     const struct member *member = &members->list[i];
-    struct point p = {sucker_count(member), member_metric(member, key)};
+    struct point p = {metric_or_zero(member, "sucker_count"), metric_or_zero(member, key)};
     if (isfinite(p.x) && isfinite(p.y) && !member->stopped) {
       points[count++] = p;
     }

@@ -223,6 +223,7 @@ static void set_suction(json_t *metrics, const struct job_spec *spec) {
   }
   if (spec->pneunet.sucker_count > 0) {
     set_real(metrics, "suction_force_N", force);
+    set_real(metrics, "sucker_count", spec->pneunet.sucker_count);
   }
 }
 

@@ -132,7 +132,9 @@ enum status result_measured_store(const struct job_spec *spec, json_t *document,
                                 "are left out of the comparison",
                                 left_out, measured.count));
   }
-  status = json_object_set(document, "measured", rows) == 0 ? STATUS_OK : STATUS_NO_MEMORY;
+  bool stored = json_object_set(document, "measured", rows) == 0 &&
+                json_object_set_new(document, "measured_metric", json_string(metric)) == 0;
+  status = stored ? STATUS_OK : STATUS_NO_MEMORY;
 done:
   if (status == STATUS_NO_MEMORY) {
     error_set(error, status, NULL, "no memory for the measured curve");

@@ -298,6 +298,43 @@ START_TEST(simulated_and_measured) {
 }
 END_TEST
 
+START_TEST(fits_and_stresses) {
+  json_t *samples = json_array(), *stresses = json_array();
+  for (int i = 1; i <= 40; i++) {
+    double strain = i / 40.0, stress = 0.3 * strain + 0.02 * sin(9 * strain);
+    json_array_append_new(samples,
+                          json_pack("{s:f,s:f,s:f,s:f}", "strain", strain, "measured_stress_MPa",
+                                    stress, "fitted_stress_MPa", 0.3 * strain, "band_MPa", 0.02));
+    double stretch = 0.4 + 0.08 * i, even = stretch - pow(stretch, -2);
+    json_array_append_new(
+        stresses, json_pack("{s:f,s:f,s:f,s:f}", "stretch", stretch, "uniaxial_stress_MPa",
+                            0.2 * even, "planar_stress_MPa", 0.2 * (stretch - pow(stretch, -3)),
+                            "equibiaxial_stress_MPa", 0.2 * (stretch - pow(stretch, -5))));
+  }
+  json_t *fit = json_pack("{s:s,s:o,s:{s:s},s:{s:f,s:f,s:f},s:[{s:s,s:s,s:f,s:f},{s:s,s:s,s:f}]}",
+                          "kind", "fit-material", "samples", samples, "material", "model", "yeoh",
+                          "metrics", "strain_from", 0.1, "strain_to", 0.8, "r_squared", 0.9978,
+                          "coefficients", "name", "mu1", "unit", "MPa", "value", 0.0612,
+                          "half_width", 0.0014, "name", "alpha1", "unit", "1", "value", 2.4);
+  json_t *curve = json_pack("{s:s,s:o}", "kind", "material-curve", "samples", stresses);
+  char text[300];
+  ck_assert_str_eq(offered("fit-material", fit, text), "fit");
+  ck_assert_str_eq(offered("material-curve", curve, text), "stress");
+  ck_assert_uint_gt(pixels_of("fit", fit, 0, 114, 178), 500);
+  ck_assert_uint_gt(pixels_of("fit", fit, 213, 94, 0), 500);
+  ck_assert_uint_gt(pixels_of("fit", fit, 204, 227, 240), 2000);  /* the band */
+  ck_assert_uint_gt(pixels_of("fit", fit, 237, 240, 244), 20000); /* the range */
+  ck_assert_uint_gt(pixels_of("stress", curve, 0, 158, 115), 300);
+  draw_at_all_sizes("fit", fit, "yeoh");
+  draw_at_all_sizes("stress", curve, "three");
+  json_object_set_new(fit, "samples", json_array());
+  draw_at_all_sizes("fit", fit, "none");
+  ck_assert_int_eq(refuse("stress", fit, NULL), STATUS_NOT_FOUND);
+  json_decref(fit);
+  json_decref(curve);
+}
+END_TEST
+
 START_TEST(the_angle_has_its_error) {
   json_t *result = plot_sample_result(1.27, 50, 10);
   size_t without = pixels_of("angle", result, 0, 114, 178);
@@ -322,9 +359,9 @@ START_TEST(one_member_and_none) {
 }
 END_TEST
 
-static const char *const all_plots[] = {"curves", "metric",  "ranking",  "workspace",  "twist",
-                                        "mesh",   "suction", "measured", "midline3d",  "tip3d",
-                                        "angle",  "tip",     "midline",  "contraction"};
+static const char *const all_plots[] = {
+    "curves",    "metric", "ranking", "workspace", "twist",   "mesh",        "suction", "measured",
+    "midline3d", "tip3d",  "angle",   "tip",       "midline", "contraction", "fit",     "stress"};
 enum { ALL = sizeof all_plots / sizeof *all_plots };
 
 /* Draws everything that a document may be drawn as: a picture or a refusal, nothing else. */
@@ -367,6 +404,11 @@ START_TEST(malformed_documents) {
       "{\"statistics\":{\"unknowns\":1e9},\"metrics\":{\"bending_angle_deg\":0}}]}",
       "{\"members\":[{\"samples\":[{\"tip_x_mm\":1e9,\"tip_y_mm\":-1e9,\"tip_z_mm\":1e9}],"
       "\"values\":{\"/load/pressure/left\":\"1e9 MPa\",\"/load/pressure/right\":\"-1 Pa\"}}]}",
+      "{\"samples\":[{\"strain\":1e9,\"measured_stress_MPa\":-1e9,\"band_MPa\":1e9},"
+      "{\"strain\":0,\"fitted_stress_MPa\":1e9,\"band_MPa\":1e9}],\"coefficients\":[null,"
+      "{\"name\":\"mu\",\"value\":1e9}],\"metrics\":{\"strain_from\":-1e9,\"strain_to\":1e9}}",
+      "{\"samples\":[{\"stretch\":1,\"uniaxial_stress_MPa\":1},{\"stretch\":1,"
+      "\"uniaxial_stress_MPa\":-9}],\"metrics\":{\"stable_to_stretch\":-1e9}}",
       "{\"measured\":[null,{},{\"pressure_kPa\":-1e9,\"measured\":1e9,\"error\":-1e9}]}",
       "{\"midlines\":[{\"pressure_kPa\":1,\"points_mm\":[[0,1,0],[0,1,0]]}],"
       "\"samples\":[{\"pressure_kPa\":1,\"tip_x_mm\":0,\"tip_y_mm\":1,\"tip_z_mm\":0}]}",
@@ -456,6 +498,7 @@ int main(void) {
   tcase_add_test(pictures, bodies_in_space);
   tcase_add_test(pictures, meshes_and_suckers);
   tcase_add_test(pictures, simulated_and_measured);
+  tcase_add_test(pictures, fits_and_stresses);
   tcase_add_test(pictures, the_angle_has_its_error);
   tcase_add_test(pictures, one_member_and_none);
   tcase_add_test(pictures, malformed_documents);
