@@ -34,11 +34,10 @@ struct sheet {
 /* Whether the members differ in their pressures: slopes against pressure are then no comparison. */
 static bool varies_pressure(const json_t *result) {
   static const char pressure[] = "/load/pressure";
-  const json_t *parameters = json_object_get(result, "parameters");
-  for (size_t i = 0; i < json_array_size(parameters); i++) {
-    const json_t *pointer = json_object_get(json_array_get(parameters, i), "pointer");
-    const char *text = json_string_value(pointer);
-    if (text && strncmp(text, pressure, strlen(pressure)) == 0) {
+  json_t *first = json_array_get(json_object_get(result, "members"), 0), *value;
+  const char *pointer;
+  json_object_foreach(json_object_get(first, "values"), pointer, value) {
+    if (strncmp(pointer, pressure, strlen(pressure)) == 0) {
       return true;
     }
   }

@@ -37,6 +37,11 @@ check "the document as submitted" "$(job | jq -cS .)" "$(printf '%s' "$BODY" | j
 fetch GET '/api/v1/jobs/1/plots/angle.png?width=640&height=480'
 check "plot type" image/png "$(header Content-Type)"
 check "plot width" "640" "$(od -An -tu1 -j16 -N4 "$WORK/body" | awk '{ print (($1*256+$2)*256+$3)*256+$4 }')"
+fetch GET /api/v1/jobs/1/plots/midline3d.png
+check "a plot that this body has not" 404 "$CODE"
+check_match "why" 'stays in its plane' "$(field .detail)"
+fetch GET /api/v1/jobs/1/plots/curves.png
+check "a plot of another kind" 404 "$CODE"
 fetch GET '/api/v1/jobs/1/plots/angle.png?width=100000'
 check "a plot too wide" 400 "$CODE"
 
