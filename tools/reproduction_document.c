@@ -80,36 +80,53 @@ void print_values(FILE *out, const struct works *works, const json_t *data, cons
 
 /* ---- trends ------------------------------------------------------------------------------- */
 
-/* Whether a sequence goes on as "rising", "falling" or "equal" within the tolerance. */
-static bool goes_as(const char *direction, double before, double after, double tolerance) {
-  double change = after - before;
-  return strcmp(direction, "rising") == 0    ? change > tolerance
-         : strcmp(direction, "falling") == 0 ? change < -tolerance
-                                             : fabs(change) <= tolerance;
+/* Values of the steps of one rank: for a plain sequence each step is a group of its own. */
+struct group {
+  double low, high;
+};
+
+/* Whether the groups go on as "rising" or "falling": every value beyond every one before. */
+static bool goes_as(const char *direction, struct group before, struct group after) {
+  return strcmp(direction, "rising") == 0 ? after.low > before.high : after.high < before.low;
 }
 
-static void print_trend(FILE *out, const struct works *works, const json_t *entry) {
-  const json_t *steps = json_object_get(entry, "steps");
-  const char *direction = text_of(entry, "direction");
-  double tolerance = json_number_value(json_object_get(entry, "tolerance")), before = NAN;
-  bool as_published = true, complete = true;
+/* Prints the values of one group; false when one is missing. */
+static bool print_group(FILE *out, const struct works *works, const json_t *steps, bool first,
+                        struct group *group) {
+  bool complete = true;
   size_t index;
   json_t *step;
-  fprintf(out, "| %s | %s | ", text_of(entry, "what"), direction);
+  *group = (struct group){INFINITY, -INFINITY};
   json_array_foreach(steps, index, step) {
     struct finding ours = finding_from(works, step);
-    fprintf(out, "%s%s ", index ? ", " : "", text_of(step, "label"));
-    if (!ours.found) {
+    fprintf(out, "%s%s: ", first && index == 0 ? "" : ", ", text_of(step, "label"));
+    if (ours.found) {
+      fprintf(out, "%.4g", ours.value);
+      *group = (struct group){fmin(group->low, ours.value), fmax(group->high, ours.value)};
+    } else {
       fputs("missing", out);
       complete = false;
-      continue;
     }
-    fprintf(out, "%.4g", ours.value);
-    as_published =
-        as_published && (isnan(before) || goes_as(direction, before, ours.value, tolerance));
-    before = ours.value;
   }
-  fprintf(out, " | %s |\n", complete ? (as_published ? "yes" : "**no**") : "missing");
+  return complete;
+}
+
+/* "steps" are in the published order; "groups" are lists of steps without an order among them. */
+static void print_trend(FILE *out, const struct works *works, const json_t *entry) {
+  const json_t *steps = json_object_get(entry, "steps"), *groups = json_object_get(entry, "groups");
+  const char *direction = text_of(entry, "direction");
+  struct group before = {0, 0}, group;
+  bool as_published = true, complete = true;
+  fprintf(out, "| %s | %s | ", text_of(entry, "what"), direction);
+  for (size_t g = 0; g < json_array_size(groups ? groups : steps); g++) {
+    json_t *one = groups ? json_incref(json_array_get(groups, g))
+                         : json_pack("[O]", json_array_get(steps, g));
+    complete = print_group(out, works, one, g == 0, &group) && complete;
+    as_published = as_published && (g == 0 || goes_as(direction, before, group));
+    before = group;
+    json_decref(one);
+  }
+  fprintf(out, " | %s |\n", !complete ? "missing" : as_published ? "yes" : "**no**");
 }
 
 void print_trends(FILE *out, const struct works *works, const json_t *data, const char *paper) {

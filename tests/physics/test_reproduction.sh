@@ -150,7 +150,11 @@ if [ -x "$build/tools/reproduction" ]; then
   "trends": [
     { "paper": "multicurvature", "what": "gap", "direction": "rising", "steps": [
       { "label": "1", "from": "multicurvature/sides#gap 1 mm, left 0 deg, right 0 deg", "value": "/metrics/bending_angle_deg" },
-      { "label": "2", "from": "multicurvature/sides#gap 2 mm, left 0 deg, right 0 deg", "value": "/metrics/bending_angle_deg" } ] } ],
+      { "label": "2", "from": "multicurvature/sides#gap 2 mm, left 0 deg, right 0 deg", "value": "/metrics/bending_angle_deg" } ] },
+    { "paper": "multicurvature", "what": "groups", "direction": "falling", "groups": [
+      [ { "label": "1", "from": "multicurvature/sides#gap 1 mm, left 0 deg, right 0 deg", "value": "/metrics/bending_angle_deg" },
+        { "label": "2", "from": "multicurvature/sides#gap 2 mm, left 0 deg, right 0 deg", "value": "/metrics/bending_angle_deg" } ],
+      [ { "label": "3", "from": "multicurvature/sides#gap 1 mm, left 2 deg, right 2 deg", "value": "/metrics/bending_angle_deg" } ] ] } ],
   "figures": [
     { "paper": "multicurvature", "from": "multicurvature/two", "plot": "angle", "file": "two", "caption": "Two" },
     { "paper": "multicurvature", "from": "multicurvature/three", "plot": "angle", "file": "three", "caption": "Three" } ],
@@ -167,7 +171,7 @@ END
   }
   document=$dir/source/docs/REPRODUCTION.md
   reproduce --only two
-  grep -q '^| gap | rising | 1 missing, 2 missing | missing |$' "$document" ||
+  grep -q '^| gap | rising | 1: missing, 2: missing | missing |$' "$document" ||
     fail "the part that was not run: $(cat "$document")"
   reproduce
   check "runs of the second call" 1 "$(grep -c '^  run ' "$dir/said")"
@@ -178,7 +182,8 @@ END
     fail "a value: $(cat "$document")"
   grep -q '^| half of it | below 10 | .* | holds | not estimated |$' "$document" || fail "a bound"
   grep -q "^| nobody's | 1 | missing: multicurvature/three" "$document" || fail "a missing value"
-  grep -q '^| gap | rising | 1 .*, 2 .* | yes |$' "$document" || fail "a trend"
+  grep -q '^| gap | rising | 1: .*, 2: .* | yes |$' "$document" || fail "a trend"
+  grep -q '^| groups | falling | 1: .*, 2: .*, 3: .* | yes |$' "$document" || fail "groups"
   grep -q '| 0.6729 | 0.6895 | [1-8] |' "$document" || fail "the printed formula"
   grep -q '^!\[Two\](figures/reproduction/two.png)$' "$document" || fail "a figure"
   grep -q '^\*Three\*: missing' "$document" || fail "a missing figure"
