@@ -368,6 +368,30 @@ START_TEST(the_documents_of_the_manual_are_valid) {
 }
 END_TEST
 
+static void read_job_file(const char *name, struct job_spec *spec) {
+  size_t size = 0;
+  struct error error;
+  const char *text = read_source_file(name, &size);
+  ck_assert_msg(job_spec_read(text, size, spec, &error) == STATUS_OK, "%s: %s: %s", name,
+                error.pointer, error.message);
+}
+
+/* Its document repeats the baseline's dimensions: they have to stay the same. */
+START_TEST(the_design_with_suckers_is_the_baseline_otherwise) {
+  struct job_spec base, with;
+  read_job_file("jobs/multicurvature/baseline.json", &base);
+  read_job_file("jobs/multicurvature/chosen-with-suckers.json", &with);
+  ck_assert_int_eq(with.pneunet.sucker_count, 3);
+  suite_check_near(with.pneunet.sucker[2].diameter, 0.016);
+  suite_check_near(with.pneunet.suction_pressure, 50e3);
+  ck_assert_mem_eq(&with.material, &base.material, sizeof base.material);
+  ck_assert_mem_eq(&with.load, &base.load, sizeof base.load);
+  memset(with.pneunet.sucker, 0, sizeof with.pneunet.sucker);
+  with.pneunet.sucker_count = 0;
+  ck_assert_mem_eq(&with.pneunet, &base.pneunet, sizeof base.pneunet);
+}
+END_TEST
+
 START_TEST(every_job_file_of_the_project_is_valid) {
   static const char *const files[] = {
       "multicurvature/baseline",   "multicurvature/gap-1mm",
@@ -432,6 +456,7 @@ int main(void) {
   tcase_add_test(tcase, errors_have_a_place_in_the_text);
   tcase_add_test(tcase, text_that_is_no_job);
   tcase_add_test(tcase, the_documents_of_the_manual_are_valid);
+  tcase_add_test(tcase, the_design_with_suckers_is_the_baseline_otherwise);
   tcase_add_loop_test(tcase, every_job_file_of_the_project_is_valid, 0, 6);
   tcase_add_test(tcase, one_reader_serves_several_threads);
   suite_add_tcase(suite, tcase);
