@@ -103,9 +103,10 @@ static struct chart_series named_curve(const struct family *family, size_t membe
                                .detail = family->details[member]};
 }
 
-/* Makes the series: grey ones first, so that they lie below; their line in the legend is last. */
+/* Makes the series. Of too many, some evenly spread over the study are named. The grey ones come
+ * first, so that they lie below; their line in the legend is last. */
 static void make_series(struct family *family, const size_t *counts) {
-  size_t drawn = 0, named = 0, first = 0;
+  size_t drawn = 0, named = 0, first = 0, seen = 0;
   for (size_t i = 0; i < family->members.count; i++) {
     drawn += counts[i] > 0;
   }
@@ -113,10 +114,14 @@ static void make_series(struct family *family, const size_t *counts) {
   snprintf(family->rest, sizeof family->rest, "%zu more", drawn - (drawn > limit ? limit : drawn));
   size_t grey = drawn > limit ? drawn - limit : 0;
   for (size_t i = 0; i < family->members.count; i++) {
-    if (counts[i] > 0 && named < limit) {
+    if (counts[i] == 0) {
+      continue;
+    }
+    seen++;
+    if (grey == 0 || seen * limit / drawn != (seen - 1) * limit / drawn) {
       family->series[grey + named] = named_curve(family, i, counts[i], named);
       named++;
-    } else if (counts[i] > 0) {
+    } else {
       family->series[first++] = (struct chart_series){.points = family->points[i],
                                                       .count = counts[i],
                                                       .colour = {0.72, 0.74, 0.77},

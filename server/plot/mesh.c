@@ -32,16 +32,64 @@ static size_t read_points(const struct members *members, const char *key, struct
   return count;
 }
 
+/* Draws the points, coarsest first, with the finest value and what lies within 1 % of it. */
+static void draw_points(struct canvas *canvas, const struct plot_input *input,
+                        const struct members *members, const char *key, const struct point *points,
+                        size_t count, const struct chart_label *labels) {
+  char subtitle[DATA_HEADING], notice[DATA_HEADING], y_label[160], name[100];
+  char number[TICKS_TEXT], unit[32];
+  struct point finest = count ? points[count - 1] : (struct point){0, 0};
+  /* over the whole width; the range of y has to be opened for the band by points */
+  const struct point line[2] = {{-99, finest.y}, {99, finest.y}};
+  const struct point edges[2] = {{finest.x, 0.99 * finest.y}, {finest.x, 1.01 * finest.y}};
+  const double band[2] = {fabs(finest.y) / 100, fabs(finest.y) / 100};
+  ticks_number(finest.y, 4, number);
+  quantity_unit(key, unit, sizeof unit);
+  bool joined = *unit == '\0' || strncmp(unit, "°", strlen("°")) == 0;
+  snprintf(name, sizeof name, "finest: %s%s%s, ± 1 %%", number, joined ? "" : " ", unit);
+  const struct chart_series series[] = {{.points = edges, .count = count ? 2 : 0},
+                                        {.points = line,
+                                         .count = count > 1 ? 2 : 0,
+                                         .colour = colour_series(1),
+                                         .width = 1.6,
+                                         .dash = DASH_LONG,
+                                         .band = band,
+                                         .guide = true,
+                                         .name = name},
+                                        {.points = points,
+                                         .count = count,
+                                         .colour = colour_series(0),
+                                         .width = 2.0,
+                                         .marker = MARKER_CIRCLE,
+                                         .name = "computed"}};
+  members_subtitle(input, members->count, subtitle);
+  members_notice(members, notice);
+  quantity_label(key, y_label, sizeof y_label);
+  struct chart chart = {.title = "Convergence with the mesh",
+                        .subtitle = subtitle,
+                        .notice = notice,
+                        .x_label = "Number of unknowns",
+                        .y_label = y_label,
+                        .loose_x = true,
+                        .log_x = true,
+                        .series = series,
+                        .series_count = sizeof series / sizeof *series,
+                        .labels = labels,
+                        .label_count = count,
+                        .empty = "None of the members was solved"};
+  chart_draw(&chart, canvas);
+}
+
 enum status draw_mesh(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                       struct error *error) {
   (void)count;
-  const json_t *result = inputs[0].result;
+  const struct plot_input *input = &inputs[0];
   struct members members;
   struct point *points = NULL;
   struct chart_label *labels = NULL;
   const char *key =
-      metric_choose(result, inputs[0].metric ? inputs[0].metric : "bending_angle_deg");
-  enum status status = members_read(result, &members, error);
+      metric_choose(input->result, input->metric ? input->metric : "bending_angle_deg");
+  enum status status = members_read(input->result, &members, error);
   if (status != STATUS_OK) {
     goto done;
   }
@@ -54,48 +102,7 @@ enum status draw_mesh(struct canvas *canvas, const struct plot_input *inputs, si
   }
   key = key ? key : "bending_angle_deg";
   size_t used = read_points(&members, key, points, labels);
-  char subtitle[DATA_HEADING], notice[DATA_HEADING], y_label[160], name[100];
-  char number[TICKS_TEXT], unit[32];
-  struct point finest = used ? points[used - 1] : (struct point){0, 0};
-  /* over the whole width; the range of y has to be opened for the band by points */
-  struct point line[2] = {{-99, finest.y}, {99, finest.y}};
-  struct point edges[2] = {{finest.x, 0.99 * finest.y}, {finest.x, 1.01 * finest.y}};
-  double band[2] = {fabs(finest.y) / 100, fabs(finest.y) / 100};
-  ticks_number(finest.y, 4, number);
-  quantity_unit(key, unit, sizeof unit);
-  bool joined = *unit == '\0' || strncmp(unit, "°", strlen("°")) == 0;
-  snprintf(name, sizeof name, "finest: %s%s%s, ± 1 %%", number, joined ? "" : " ", unit);
-  const struct chart_series series[] = {{.points = edges, .count = used ? 2 : 0},
-                                        {.points = line,
-                                         .count = used > 1 ? 2 : 0,
-                                         .colour = colour_series(1),
-                                         .width = 1.6,
-                                         .dash = DASH_LONG,
-                                         .band = band,
-                                         .guide = true,
-                                         .name = name},
-                                        {.points = points,
-                                         .count = used,
-                                         .colour = colour_series(0),
-                                         .width = 2.0,
-                                         .marker = MARKER_CIRCLE,
-                                         .name = "computed"}};
-  members_subtitle(&inputs[0], members.count, subtitle);
-  members_notice(&members, notice);
-  quantity_label(key, y_label, sizeof y_label);
-  struct chart chart = {.title = "Convergence with the mesh",
-                        .subtitle = subtitle,
-                        .notice = notice,
-                        .x_label = "Number of unknowns",
-                        .y_label = y_label,
-                        .loose_x = true,
-                        .log_x = true,
-                        .series = series,
-                        .series_count = sizeof series / sizeof *series,
-                        .labels = labels,
-                        .label_count = used,
-                        .empty = "None of the members was solved"};
-  chart_draw(&chart, canvas);
+  draw_points(canvas, input, &members, key, points, used, labels);
 done:
   free(points);
   free(labels);
