@@ -154,7 +154,7 @@ static enum status open_events(const char *path, FILE **events, struct error *er
 }
 
 static void print_document(json_t *document) {
-  json_dumpf(document, stdout, JSON_INDENT(1) | JSON_REAL_PRECISION(10));
+  json_dumpf(document, stdout, JSON_INDENT(1) | JSON_REAL_PRECISION(12));
   putchar('\n');
   json_decref(document);
 }

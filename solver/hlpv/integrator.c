@@ -89,7 +89,7 @@ static bool set_roots(struct integrator *in) {
 }
 
 static bool set_up(struct integrator *in) {
-  in->cvode = CVodeCreate(CV_BDF, in->context);
+  in->cvode = CVodeCreate(CV_ADAMS, in->context);
   return in->cvode && CVodeSetErrHandlerFn(in->cvode, ignore_message, NULL) == CV_SUCCESS &&
          CVodeInit(in->cvode, derivative, 0.0, in->x) == CV_SUCCESS &&
          CVodeSetUserData(in->cvode, in) == CV_SUCCESS &&

@@ -18,7 +18,7 @@ enum {
   HLPV_MODES_MAX = 8,
   HLPV_TRANSITIONS_MAX = 16,
   HLPV_POINTS_MAX = 10000, /* of a set-point profile */
-  HLPV_SAMPLES_MAX = 20000
+  HLPV_SAMPLES_MAX = 25000
 };
 
 /* Places of the state. */
