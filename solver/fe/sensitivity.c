@@ -45,6 +45,7 @@ static enum status prepare_model(struct sensitivity *s, const struct fe_model *f
   if (status != STATUS_OK) {
     return status;
   }
+  memcpy(s->model->cavity_share, from->cavity_share, sizeof from->cavity_share);
   model_add_gravity(s->model, s->gravity);
   s->vector = malloc(2 * sizeof *s->vector * ((size_t)s->model->dof_count + 1));
   if (!s->vector || state_create(s->model, &s->state) != STATUS_OK) {

@@ -290,12 +290,21 @@ static const double *row_of(const struct derivatives *d, int parameter) {
   return parameter < 0 ? d->to_load : d->row[parameter];
 }
 
+/* Whether quantity k is what samples hold under its name: the bending of a spatial body is that of
+ * its sections, not of the stations, and cavities of unequal pressures count unequally here. */
+static bool is_sampled(const struct result_sensitivity *r, int k) {
+  const double *share = r->linear->model->cavity_share;
+  return k == BENDING_ANGLE   ? !r->linear->mesh.spatial
+         : k == CAVITY_VOLUME ? share[0] == share[1]
+                              : true;
+}
+
 static void set_row(const struct result_sensitivity *r, json_t *object, int parameter,
                     const double row[QUANTITIES]) {
   /* Half a model cannot tell which way a body of unequal sides turns. */
   bool lopsided = parameter >= 0 && variation_one_sided(r->spec, r->variation[parameter].parameter);
   for (int k = 0; k < QUANTITIES; k++) {
-    if (k != TIP_Y || !lopsided) {
+    if ((k != TIP_Y || !lopsided) && is_sampled(r, k)) {
       set_real(object, quantity_key[k], row[k]);
     }
   }
@@ -340,7 +349,9 @@ static json_t *metric_row(const struct result_sensitivity *r, int parameter) {
     json_object_del(metrics, quantity_key[TIP_Z]);
     set_real(metrics, "mass_g", r->mass[parameter]);
   }
-  set_real(metrics, "sensitivity_deg_per_kPa", slope_derivative(r, parameter));
+  if (is_sampled(r, BENDING_ANGLE)) {
+    set_real(metrics, "sensitivity_deg_per_kPa", slope_derivative(r, parameter));
+  }
   return metrics;
 }
 

@@ -5,8 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 #include "solver/fe/vec3.h"
+#include "solver/job/parameter.h"
 #include "solver/mesh/actuator.h"
 #include "solver/mesh/grid.h"
+#include "solver/post/result_sensitivity.h"
 #include "solver/post/sample.h"
 #include "tests/physics/oblique_case.h"
 #include "tests/physics/pneunet_case.h"
@@ -178,6 +180,45 @@ START_TEST(oblique_walls_turn_bending_into_twist) {
 }
 END_TEST
 
+/* The derivative of the tip to the shear modulus, of a body whose rows have unequal pressures,
+ * against differences; what the samples of a twisted body mean otherwise is left out. */
+START_TEST(derivatives_know_the_pressures_of_the_rows) {
+  struct job_spec spec;
+  struct solve s[3];
+  const double modulus[3] = {0.4e6, 0.4e6 - 200, 0.4e6 + 200};
+  double tip[3];
+  for (int k = 0; k < 3; k++) {
+    oblique_prototype(&spec, 45, 2);
+    spec.load.cavity_share[1] = 0.25;
+    spec.load.steps = 1;
+    spec.material.c[0] = modulus[k];
+    oblique_follow(&spec, &s[k]);
+    int node = s[k].mesh.centreline[s[k].mesh.section_count - 1];
+    tip[k] = 1e3 * s[k].state.u[3 * node + 1];
+  }
+  spec.material.c[0] = modulus[0];
+  spec.sensitivity.count = parameter_list(&spec, spec.sensitivity.parameter);
+  struct result_sensitivity *r = NULL;
+  struct path_point point = {
+      .pressure = spec.load.pressure_to, .recorded = true, .state = &s[0].state};
+  ck_assert_int_eq(result_sensitivity_create(&spec, s[0].model, &r, NULL), STATUS_OK);
+  ck_assert_int_eq(result_sensitivity_add(r, &point), STATUS_OK);
+  json_t *block = result_sensitivity_block(r);
+  json_t *first = json_array_get(json_object_get(block, "parameters"), 0);
+  ck_assert_str_eq(json_string_value(json_object_get(first, "parameter")), "/material/mu");
+  json_t *sample = json_array_get(json_object_get(first, "samples"), 0);
+  report_check("twisted rows, d tip_y / d mu, mm/MPa", "coarse", (tip[2] - tip[1]) / 400e-6,
+               json_number_value(json_object_get(sample, "tip_y_mm")), 2e-4);
+  ck_assert_ptr_null(json_object_get(sample, "bending_angle_deg"));
+  ck_assert_ptr_null(json_object_get(sample, "cavity_volume_mm3"));
+  json_decref(block);
+  result_sensitivity_destroy(r);
+  for (int k = 0; k < 3; k++) {
+    solve_release(&s[k]);
+  }
+}
+END_TEST
+
 /* Neighbours whose oblique walls have met push on each other and do not pass through. */
 START_TEST(oblique_walls_touch) {
   struct job_spec spec;
@@ -206,6 +247,7 @@ int main(void) {
   tcase_add_test(tcase, exchanged_pressures_give_the_mirror_image);
   tcase_add_test(tcase, equal_pressures_do_not_twist);
   tcase_add_test(tcase, oblique_walls_turn_bending_into_twist);
+  tcase_add_test(tcase, derivatives_know_the_pressures_of_the_rows);
   tcase_add_test(tcase, oblique_walls_touch);
   suite_add_tcase(suite, tcase);
   return suite_run(suite);

@@ -199,8 +199,9 @@ small='def small: .load.pressure.steps = 1 | .error_estimate = false | .contact 
     (if .load.pressure.to then .load.pressure.to = "1 kPa"
      else .load.pressure.left |= (if . then "1 kPa" else . end) |
           .load.pressure.right |= (if . then "1 kPa" else . end) end) |
-    (if .actuator.family == "pneunet" then .mesh = {gap_wall: 1, cavity: 1, gap: 1, half_width: 1,
-       side_wall: 1, bottom: 1, height: 1, top: 1} else . end) | del(.metrics);
+    (if .actuator.family == "pneunet" then . else .actuator.length = "70 mm" end) |
+    (.mesh = {gap_wall: 1, cavity: 1, gap: 1, half_width: 1, side_wall: 1, bottom: 1, height: 1,
+       top: 1}) | del(.metrics);
   if .kind == "study" then .base |= small | del(.ranking) |
     (if .set then .set |= with_entries(select(.key | test("^/(actuator|material)"))) else . end) |
     (if .designs then .designs |= .[0:1] else .parameters |= map(.values |= .[0:1]) end) |
