@@ -17,8 +17,10 @@ struct slot {
   bool table; /* a table of data, otherwise a document */
 };
 
-static const struct slot slots[] = {
-    {NULL, "data", true}, {"measured", "data", true}, {"input", "data", true}, {NULL, "base", false}};
+static const struct slot slots[] = {{NULL, "data", true},
+                                    {"measured", "data", true},
+                                    {"input", "data", true},
+                                    {NULL, "base", false}};
 
 enum { SLOTS = sizeof slots / sizeof *slots, EMBED_LEVELS = 2 };
 
