@@ -153,8 +153,10 @@ static enum status open_events(const char *path, FILE **events, struct error *er
   return STATUS_OK;
 }
 
+/* A study is long, and printed without spaces; other documents people read. */
 static void print_document(json_t *document) {
-  json_dumpf(document, stdout, JSON_INDENT(1) | JSON_REAL_PRECISION(12));
+  size_t layout = json_object_get(document, "members") ? JSON_COMPACT : JSON_INDENT(1);
+  json_dumpf(document, stdout, layout | JSON_REAL_PRECISION(12));
   putchar('\n');
   json_decref(document);
 }

@@ -5,8 +5,9 @@
 #include "solver/study/ranking.h"
 #include "solver/study/study_internal.h"
 
-/* A study with many members keeps of each the midline at the last pressure only. */
-enum { MIDLINES_OF_ALL_PRESSURES = 200 };
+/* A study whose members have more points of midlines than this keeps of each the midline at the
+ * last pressure only, so that the document stays below the 16 MiB that the daemon takes. */
+enum { MIDLINE_POINTS_MAX = 200000 };
 
 /* ---- mirror images ------------------------------------------------------------------------ */
 
@@ -63,27 +64,46 @@ void study_mirror_result(json_t *result) {
 /* ---- members ------------------------------------------------------------------------------ */
 
 /* Takes over what the study keeps of a member's result. */
-static void take_result(json_t *member, json_t *result, bool every_midline) {
-  static const char *const kept[] = {"status",  "reason",     "message",
-                                     "metrics", "samples",    "rest_midline_mm",
-                                     "fit",     "statistics", "warnings"};
+static void take_result(json_t *member, json_t *result) {
+  static const char *const kept[] = {"status",     "reason",   "message",         "metrics",
+                                     "samples",    "midlines", "rest_midline_mm", "fit",
+                                     "statistics", "warnings"};
   for (size_t i = 0; i < sizeof kept / sizeof *kept; i++) {
     json_t *value = json_object_get(result, kept[i]);
     if (value) {
       json_object_set(member, kept[i], value);
     }
   }
-  json_t *midlines = json_object_get(result, "midlines");
-  if (!midlines) {
+}
+
+static size_t count_points(const json_t *members) {
+  size_t i, k, count = 0;
+  json_t *member, *midline;
+  json_array_foreach(members, i, member) {
+    json_array_foreach(json_object_get(member, "midlines"), k, midline) {
+      count += json_array_size(json_object_get(midline, "points_mm"));
+    }
+  }
+  return count;
+}
+
+/* Drops midlines while they are too many: all but the last ones. */
+static void thin_midlines(json_t *members, json_t *warnings) {
+  size_t index;
+  json_t *member;
+  if (count_points(members) <= MIDLINE_POINTS_MAX) {
     return;
   }
-  if (every_midline) {
-    json_object_set(member, "midlines", midlines);
-    return;
+  json_array_foreach(members, index, member) {
+    json_t *midlines = json_object_get(member, "midlines");
+    size_t count = json_array_size(midlines);
+    if (count > 1) {
+      json_t *last = json_pack("[O]", json_array_get(midlines, count - 1));
+      json_object_set_new(member, "midlines", last);
+    }
   }
-  json_t *last = json_array();
-  json_array_append(last, json_array_get(midlines, json_array_size(midlines) - 1));
-  json_object_set_new(member, "midlines", last);
+  json_array_append_new(warnings, json_string("of each member only the last midline is kept: all "
+                                              "of them have too many points together"));
 }
 
 static json_t *index_or_null(int index) {
@@ -108,7 +128,7 @@ static json_t *member_object(const struct study *study, size_t index,
     if (mirrored) {
       study_mirror_result(result);
     }
-    take_result(object, result, study->count <= MIDLINES_OF_ALL_PRESSURES);
+    take_result(object, result);
   } else {
     json_object_set_new(object, "reason", json_string(fate->settled ? fate->reason : "not_run"));
     json_object_set_new(
@@ -215,6 +235,7 @@ json_t *study_document(const struct job_spec *spec, const struct study *study,
     json_array_append_new(members, member_object(study, i, state, store));
   }
   warn_of_failures(members, warnings);
+  thin_midlines(members, warnings);
   json_t *ranking =
       study->ranking.asked ? ranking_document(&study->ranking, members, warnings) : NULL;
   json_t *document = json_pack(
