@@ -273,6 +273,9 @@ START_TEST(meshes_and_suckers) {
   ck_assert_double_lt(picture_mean_y(&picture, 0, 800, 0, 114, 178), 300);
   ck_assert_double_gt(picture_mean_y(&picture, 0, 800, 213, 94, 0), 300);
   free(picture.rgb);
+  /* another member with two suckers stands beside the line */
+  json_object_set_new(json_object_get(member_of(study, 5), "metrics"), "sucker_count",
+                      json_integer(2));
   draw_at_all_sizes("suction", study, "6");
   json_decref(study);
 }
