@@ -19,7 +19,7 @@ enum status actuator_mesh_finer(const struct job_spec *spec, struct mesh *mesh,
     return pneunet_mesh_cells(spec, &cells, mesh, error);
   }
   struct oblique_cells cells = oblique_resolution(spec);
-  oblique_refine(spec, &cells);
+  oblique_refine(&cells);
   return oblique_mesh(spec, &cells, mesh, error);
 }
 

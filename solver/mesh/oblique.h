@@ -20,7 +20,7 @@ struct oblique_cells {
 struct oblique_cells oblique_resolution(const struct job_spec *spec);
 
 /* Splits the cells of a job for a finer mesh that tells the error of the one they make. */
-void oblique_refine(const struct job_spec *spec, struct oblique_cells *cells);
+void oblique_refine(struct oblique_cells *cells);
 
 /* Builds the mesh of spec->oblique: half of it (y >= 0) when spec->half_model. The grid is sheared
  * like a herringbone, x = xi + tan(angle) |y|, and straightened within the solid ends, so that the

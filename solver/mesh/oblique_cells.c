@@ -16,11 +16,11 @@ struct tier {
   .top = {.cells = 1}
 
 static const struct tier tiers[] = {
-    [ACCURACY_FAST] = {{PLAIN_CELLS, .cavity = {.cells = 2}, .row = {.cells = 1},
+    [ACCURACY_FAST] = {{PLAIN_CELLS, .cavity = {.cells = 2}, .row = {.cells = 2},
                         .bottom = {.cells = 2, .last = 0.4}, .height = {.cells = 2, .first = 0.4}},
                        .end = 0.6},
-    [ACCURACY_STANDARD] = {{PLAIN_CELLS, .cavity = {.cells = 2},
-                            .row = {.cells = 2, .first = 0.6, .last = 0.6},
+    [ACCURACY_STANDARD] = {{PLAIN_CELLS, .cavity = {.cells = 3, .first = 0.5, .last = 0.5},
+                            .row = {.cells = 3, .first = 0.5, .last = 0.5},
                             .bottom = {.cells = 3, .last = 0.3},
                             .height = {.cells = 3, .first = 0.2, .last = 0.6}},
                            .end = 0.4},
@@ -79,9 +79,11 @@ struct oblique_cells oblique_resolution(const struct job_spec *spec) {
   return cells;
 }
 
-void oblique_refine(const struct job_spec *spec, struct oblique_cells *cells) {
-  cells->height.split = 2;
-  if (spec->accuracy != ACCURACY_FINE) { /* whose walls have two cells: memory goes first */
-    cells->gap_wall.split = 2;
-  }
+/* Most of the error sits in the bending of the gap walls and of the floors, along a row's cavity
+ * and across it. */
+void oblique_refine(struct oblique_cells *cells) {
+  cells->cavity.split = 2;
+  cells->row.split = 2;
+  cells->inner.split = 2;
+  cells->outer.split = 2;
 }
