@@ -74,11 +74,14 @@ void data_notice(const json_t *result, char text[DATA_HEADING]) {
     *c = *c == '_' ? ' ' : *c;
   }
   size_t count = json_array_size(samples);
-  double reached = count ? data_number(json_array_get(samples, count - 1), "pressure_kPa") : NAN;
+  const json_t *last = count ? json_array_get(samples, count - 1) : NULL;
+  double time = data_number(last, "time_s");
+  double reached = isfinite(time) ? time : data_number(last, "pressure_kPa");
   if (isfinite(reached)) {
     char number[TICKS_TEXT];
     ticks_plain(reached, 3, number);
-    snprintf(text, DATA_HEADING, "Stopped early at %s kPa: %s", number, words);
+    snprintf(text, DATA_HEADING, "Stopped early at %s %s: %s", number, isfinite(time) ? "s" : "kPa",
+             words);
   } else {
     snprintf(text, DATA_HEADING, "Stopped early: %s", words);
   }

@@ -36,6 +36,16 @@ enum status draw_midline3d(struct canvas *canvas, const struct plot_input *input
 enum status draw_tip3d(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                        struct error *error);
 
+/* Elongation, speed, pressure and set-point of a hybrid model over time, with its modes. */
+enum status draw_time(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                      struct error *error);
+/* Speed against elongation of a hybrid model, with its resets. */
+enum status draw_phase(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                       struct error *error);
+/* Elongation of a hybrid model at the end of each held set-point, up and down. */
+enum status draw_steady(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                        struct error *error);
+
 /* Bending angle against pressure of the members of a study, with sensitivities and R². */
 enum status draw_curves(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                         struct error *error);

@@ -98,6 +98,12 @@ const char *offer_mesh(const struct plot_input *input) {
   return high > low && low >= 1 ? NULL : "the members have one mesh";
 }
 
+const char *offer_steady(const struct plot_input *input) {
+  return json_array_size(json_object_get(input->result, "holds")) >= 2
+             ? NULL
+             : "fewer than two set-points were held";
+}
+
 const char *offer_suction(const struct plot_input *input) {
   const json_t *members = json_object_get(input->result, "members");
   for (size_t i = 0; i < json_array_size(members); i++) {

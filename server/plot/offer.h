@@ -14,6 +14,9 @@ const char *offer_measured(const struct plot_input *input);
 
 /* A study in which some member has the metric. */
 const char *offer_metric(const struct plot_input *input);
+/* A hybrid model with two held set-points at least. */
+const char *offer_steady(const struct plot_input *input);
+
 /* A study with a ranking. */
 const char *offer_ranking(const struct plot_input *input);
 /* A study in which some tip leaves the plane y = 0. */

@@ -38,6 +38,9 @@ static const struct entry entries[] = {
     {"suction", "study", draw_suction, offer_suction},
     {"fit", "fit-material", draw_fit, NULL},
     {"stress", "material-curve", draw_stress, NULL},
+    {"time", "hlpv", draw_time, NULL},
+    {"phase", "hlpv", draw_phase, NULL},
+    {"steady", "hlpv", draw_steady, offer_steady},
     {"overlay", NULL, draw_overlay, NULL},
 };
 
@@ -49,6 +52,7 @@ const char *const *plot_names(const char *kind) {
   static const char *const study[] = {"curves", NULL};
   static const char *const fit[] = {"fit", NULL};
   static const char *const curve[] = {"stress", NULL};
+  static const char *const hlpv[] = {"time", "phase", NULL};
   static const char *const none[] = {NULL};
   return !kind                                 ? none
          : strcmp(kind, "response") == 0       ? response
@@ -56,6 +60,7 @@ const char *const *plot_names(const char *kind) {
          : strcmp(kind, "study") == 0          ? study
          : strcmp(kind, "fit-material") == 0   ? fit
          : strcmp(kind, "material-curve") == 0 ? curve
+         : strcmp(kind, "hlpv") == 0           ? hlpv
                                                : none;
 }
 
