@@ -27,6 +27,9 @@ const CAPTIONS = {
   mesh: 'Convergence with the mesh',
   fit: 'Stress against strain, measured and fitted',
   stress: 'Stress of the material against stretch',
+  time: 'Elongation, speed and pressure over time, with the modes',
+  phase: 'Speed against elongation',
+  steady: 'Elongation at the end of each held set-point',
   suction: 'Suction and bending against the number of suckers',
 };
 

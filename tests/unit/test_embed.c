@@ -97,6 +97,9 @@ START_TEST(tables_become_text) {
   ck_assert_str_eq(string_at(document, "measured", "data", "csv"), "x,y\r\n1,2\r\n");
   ck_assert_str_eq(string_at(document, "other", "file", NULL), "a.csv");
   json_decref(document);
+  document = embed("{\"input\":{\"data\":{\"file\":\"a.csv\"},\"between\":\"linear\"}}", NULL);
+  ck_assert_str_eq(string_at(document, "input", "data", "csv"), "x,y\r\n1,2\r\n");
+  json_decref(document);
   document = embed("{\"data\":{\"file\":\"latin.csv\"}}", NULL);
   ck_assert_str_eq(string_at(document, "data", "csv", NULL), "x (\xC2\xB5m)\n");
   json_decref(document);
