@@ -60,6 +60,11 @@ double hlpv_set_point(const struct hlpv_input *input, double time) {
   return input->value[i] + part * (input->value[i + 1] - input->value[i]);
 }
 
+double hlpv_rest(const struct hlpv_spec *spec, int mode, double set_point) {
+  const struct hlpv_mode *m = &spec->mode[mode];
+  return m->rest + spec->gamma * set_point / hlpv_polynomial_value(&m->stiffness, set_point);
+}
+
 bool hlpv_is_crossed(const struct hlpv_spec *spec, const struct hlpv_transition *transition,
                      double set_point, const double x[HLPV_STATES]) {
   double beyond = transition->direction * (x[transition->quantity] - transition->level);

@@ -91,6 +91,10 @@ void hlpv_derivative(const struct hlpv_spec *spec, int mode, double set_point,
 /* The set-point at a time >= 0; at a step its new value. */
 double hlpv_set_point(const struct hlpv_input *input, double time);
 
+/* Elongation at rest in the mode with the pressure at the set-point; not finite where its stiffness
+ * vanishes. */
+double hlpv_rest(const struct hlpv_spec *spec, int mode, double set_point);
+
 /* Whether the transition is due at once in a state that lies beyond its level, or on it and moving
  * that way. */
 bool hlpv_is_crossed(const struct hlpv_spec *spec, const struct hlpv_transition *transition,

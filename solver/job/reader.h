@@ -4,6 +4,7 @@
 
 #include <jansson.h>
 #include "solver/base/units.h"
+#include "solver/job/json.h"
 #include "solver/job/spec.h"
 
 /* Smallest extent of a cavity in any direction, in m: thinner ones are taken for mistakes. */
@@ -90,6 +91,15 @@ enum status pneunet_check_suckers(const struct pneunet_spec *spec, struct error 
  * STATUS_OK, STATUS_INVALID or TOO_LARGE with the pointer to the member that has to change,
  * STATUS_NO_MEMORY. */
 enum status reader_hlpv(const struct reader *reader, const json_t *document, struct job_spec *job);
+
+struct hlpv_mode;
+
+/* Fills the stiffness of a mode, and with a slope its rest, from the states of rest in `value`, at
+ * `pointer` in the job, which is as before afterwards. spec: with gamma and rest length. per: unit
+ * of the set-point in Pa. The factor "times" does not count for the rest. STATUS_OK or INVALID. */
+enum status reader_hlpv_stiffness(const struct reader *reader, const json_t *value,
+                                  const struct hlpv_spec *spec, struct json_pointer *pointer,
+                                  double per, struct hlpv_mode *mode);
 
 /* SHA-256 of the canonical text of the document (sorted keys, no spaces, whole reals as integers)
  * without name, labels and comments, as 64 hexadecimal digits. STATUS_OK or STATUS_NO_MEMORY. */

@@ -16,34 +16,57 @@ static const char *const quantity_units[HLPV_STATES] = {"mm", "m/s", "kPa"};
 
 /* ---- modes -------------------------------------------------------------------------------- */
 
+static enum status read_per(const struct reader *reader, const json_t *value,
+                            struct json_pointer *pointer, double *per) {
+  const char *given = json_string_value(json_object_get(value, "per"));
+  char quantity[QUOTED_MAX], quoted[QUOTED_MAX];
+  if (!given) {
+    return error_set(reader->error, STATUS_INVALID, pointer->text,
+                     "the key \"per\" is missing, the unit of the set-point; for example \"psi\"");
+  }
+  snprintf(quantity, sizeof quantity, "1 %s", given);
+  if (units_read(reader->units, quantity, "kPa", per, NULL) == STATUS_OK && *per > 0.0) {
+    return STATUS_OK;
+  }
+  json_pointer_key(pointer, "per");
+  return error_set(reader->error, STATUS_INVALID, pointer->text,
+                   "%s is no unit of pressure; for example \"psi\" or \"kPa\"",
+                   text_quote(quoted, sizeof quoted, given));
+}
+
+/* stiffness: of the mode that `polynomial` belongs to, NULL for another coefficient. */
 static enum status read_polynomial(const struct reader *reader, const json_t *value,
-                                   const char *unit, const char *pointer,
+                                   const char *unit, const struct hlpv_spec *spec,
+                                   struct json_pointer *pointer, struct hlpv_mode *stiffness,
                                    struct hlpv_polynomial *polynomial) {
   *polynomial = (struct hlpv_polynomial){.count = 1, .per = 1.0};
   if (json_is_string(value)) {
     polynomial->c[0] = reader_quantity(reader, value, unit);
     return STATUS_OK;
   }
-  const char *per = json_string_value(json_object_get(value, "per"));
-  char quantity[QUOTED_MAX], quoted[QUOTED_MAX], where[POINTER_MAX + 8];
-  snprintf(quantity, sizeof quantity, "1 %s", per);
-  if (units_read(reader->units, quantity, "kPa", &polynomial->per, NULL) != STATUS_OK ||
-      !(polynomial->per > 0.0)) {
-    snprintf(where, sizeof where, "%s/per", pointer);
-    return error_set(reader->error, STATUS_INVALID, where,
-                     "%s is no unit of pressure; for example \"psi\" or \"kPa\"",
-                     text_quote(quoted, sizeof quoted, per));
-  }
+  bool steady = json_object_get(value, "states") || json_object_get(value, "slope");
   const json_t *coefficients = json_object_get(value, "coefficients");
+  enum status status = STATUS_OK;
+  if (!steady && !coefficients) {
+    return error_set(reader->error, STATUS_INVALID, pointer->text,
+                     "the key \"coefficients\" is missing; for example [\"3600 N/m\", \"-316 "
+                     "N/m\"]");
+  }
+  if (!steady || json_object_get(value, "per")) {
+    status = read_per(reader, value, pointer, &polynomial->per);
+  }
+  if (status == STATUS_OK && steady && stiffness) {
+    return reader_hlpv_stiffness(reader, value, spec, pointer, polynomial->per, stiffness);
+  }
   polynomial->count = (int)json_array_size(coefficients);
   for (int i = 0; i < polynomial->count; i++) {
     polynomial->c[i] = reader_quantity(reader, json_array_get(coefficients, (size_t)i), unit);
   }
-  return STATUS_OK;
+  return status;
 }
 
 static enum status read_mode(const struct reader *reader, const char *name, const json_t *value,
-                             struct hlpv_mode *mode) {
+                             const struct hlpv_spec *spec, struct hlpv_mode *mode) {
   const struct {
     const char *key, *unit;
     struct hlpv_polynomial *polynomial;
@@ -60,8 +83,8 @@ static enum status read_mode(const struct reader *reader, const char *name, cons
   mode->rest = reader_member(reader, value, "rest", "mm", 0.0);
   for (size_t i = 0; i < sizeof parts / sizeof *parts && status == STATUS_OK; i++) {
     size_t mark = json_pointer_key(&pointer, parts[i].key);
-    status = read_polynomial(reader, json_object_get(value, parts[i].key), parts[i].unit,
-                             pointer.text, parts[i].polynomial);
+    status = read_polynomial(reader, json_object_get(value, parts[i].key), parts[i].unit, spec,
+                             &pointer, i == 0 ? mode : NULL, parts[i].polynomial);
     json_pointer_pop(&pointer, mark);
   }
   const json_t *range = json_object_get(value, "range");
@@ -84,7 +107,7 @@ static enum status read_modes(const struct reader *reader, const json_t *modes,
                      "at least one mode is wanted; for example \"compressed\": { ... }");
   }
   json_object_foreach((json_t *)modes, name, value) {
-    enum status status = read_mode(reader, name, value, &spec->mode[spec->mode_count++]);
+    enum status status = read_mode(reader, name, value, spec, &spec->mode[spec->mode_count++]);
     if (status != STATUS_OK) {
       return status;
     }
@@ -113,14 +136,17 @@ static enum status find_mode(const struct reader *reader, const struct hlpv_spec
 /* ---- transitions -------------------------------------------------------------------------- */
 
 static enum status read_guard(const struct reader *reader, const json_t *when, const char *pointer,
-                              struct hlpv_transition *transition) {
+                              const struct hlpv_spec *spec, struct hlpv_transition *transition) {
   int given = 0;
   for (int i = 0; i < HLPV_STATES; i++) {
     const json_t *level = json_object_get(when, quantity_keys[i]);
+    const json_t *steady = json_object_get(level, "steady");
     if (level) {
       given++;
       transition->quantity = (enum hlpv_quantity)i;
-      transition->level = reader_quantity(reader, level, quantity_units[i]);
+      transition->level =
+          steady ? hlpv_rest(spec, transition->from, reader_quantity(reader, steady, "kPa"))
+                 : reader_quantity(reader, level, quantity_units[i]);
     }
   }
   transition->direction =
@@ -131,22 +157,35 @@ static enum status read_guard(const struct reader *reader, const json_t *when, c
                      "{ \"h\": \"14 mm\", \"direction\": \"rising\" }",
                      given);
   }
-  return STATUS_OK;
+  return isfinite(transition->level)
+             ? STATUS_OK
+             : error_set(reader->error, STATUS_INVALID, pointer,
+                         "the mode has no state of rest there: its stiffness vanishes");
 }
 
-static void read_reset(const struct reader *reader, const json_t *reset,
-                       struct hlpv_transition *transition) {
+static enum status read_reset(const struct reader *reader, const json_t *reset, const char *pointer,
+                              const struct hlpv_spec *spec, struct hlpv_transition *transition) {
   for (int i = 0; i < HLPV_STATES; i++) {
     const json_t *value = json_object_get(reset, quantity_keys[i]);
     const json_t *factor = json_object_get(value, "times");
+    const json_t *steady = json_object_get(value, "steady");
     struct hlpv_reset *map = &transition->reset[i];
     *map = (struct hlpv_reset){.factor = 1.0};
-    if (factor) {
+    if (factor && !steady) {
       map->factor = json_number_value(factor);
-    } else if (value) {
+    } else if (steady && !factor) {
+      double u = reader_quantity(reader, steady, "kPa");
+      *map = (struct hlpv_reset){.value = hlpv_rest(spec, transition->to, u)};
+    } else if (json_is_string(value)) {
       *map = (struct hlpv_reset){.value = reader_quantity(reader, value, quantity_units[i])};
     }
+    if (json_is_object(value) && (!factor == !steady || !isfinite(map->value))) {
+      return error_set(reader->error, STATUS_INVALID, pointer,
+                       "a reset is a value, { \"times\": -0.8 } of the one before, or for h { "
+                       "\"steady\": \"4 psi\" }, a state of rest that the mode has");
+    }
   }
+  return STATUS_OK;
 }
 
 static enum status read_transitions(const struct reader *reader, const json_t *transitions,
@@ -167,12 +206,15 @@ static enum status read_transitions(const struct reader *reader, const json_t *t
     }
     if (status == STATUS_OK) {
       snprintf(pointer, sizeof pointer, "/model/transitions/%zu/when", index);
-      status = read_guard(reader, json_object_get(value, "when"), pointer, transition);
+      status = read_guard(reader, json_object_get(value, "when"), pointer, spec, transition);
+    }
+    if (status == STATUS_OK) {
+      snprintf(pointer, sizeof pointer, "/model/transitions/%zu/reset", index);
+      status = read_reset(reader, json_object_get(value, "reset"), pointer, spec, transition);
     }
     if (status != STATUS_OK) {
       return status;
     }
-    read_reset(reader, json_object_get(value, "reset"), transition);
   }
   return STATUS_OK;
 }

@@ -123,6 +123,45 @@ static json_t *warnings_array(const struct hlpv_trajectory *t) {
   return warnings;
 }
 
+static json_t *polynomial_object(const struct hlpv_polynomial *polynomial) {
+  json_t *coefficients = json_array();
+  for (int i = 0; i < polynomial->count; i++) {
+    json_array_append_new(coefficients, json_real(polynomial->c[i]));
+  }
+  return json_pack("{s:f, s:o}", "per_Pa", polynomial->per, "coefficients_si", coefficients);
+}
+
+static json_t *transition_object(const struct hlpv_spec *spec, const struct hlpv_transition *t) {
+  static const char *const levels[HLPV_STATES] = {"h_m", "velocity_m_s", "pressure_Pa"};
+  json_t *reset = json_object();
+  for (int k = 0; k < HLPV_STATES; k++) {
+    if (t->reset[k].factor == 0.0) {
+      set_real(reset, levels[k], t->reset[k].value);
+    }
+  }
+  return json_pack("{s:s, s:s, s:{s:f, s:s}, s:o}", "from", spec->mode[t->from].name, "to",
+                   spec->mode[t->to].name, "when", levels[t->quantity], t->level, "direction",
+                   t->direction > 0 ? "rising" : "falling", "reset", reset);
+}
+
+/* The model as it was computed, with what follows from states of rest. */
+static json_t *model_object(const struct hlpv_spec *spec) {
+  json_t *modes = json_object(), *transitions = json_array();
+  for (int i = 0; i < spec->mode_count; i++) {
+    const struct hlpv_mode *m = &spec->mode[i];
+    json_t *mode =
+        json_pack("{s:f, s:o, s:o, s:o, s:o}", "rest_m", m->rest, "stiffness",
+                  polynomial_object(&m->stiffness), "damping", polynomial_object(&m->damping),
+                  "alpha", polynomial_object(&m->alpha), "beta", polynomial_object(&m->beta));
+    json_object_set_new(modes, m->name, mode);
+  }
+  for (int i = 0; i < spec->transition_count; i++) {
+    json_array_append_new(transitions, transition_object(spec, &spec->transition[i]));
+  }
+  return json_pack("{s:f, s:f, s:f, s:o, s:o}", "mass_kg", spec->mass, "gamma_N_Pa", spec->gamma,
+                   "rest_length_m", spec->rest_length, "modes", modes, "transitions", transitions);
+}
+
 static json_t *statistics_object(const struct hlpv_trajectory *t, double wall_s, double cpu_s) {
   struct rusage usage;
   getrusage(RUSAGE_SELF, &usage);
@@ -154,15 +193,15 @@ enum status result_hlpv(const struct job_spec *spec, const struct result_hlpv_op
     status = *ending;
     goto done;
   }
-  *document =
-      json_pack("{s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:[], s:o, s:{s:s, s:s}}",
-                "status", good ? "succeeded" : "diverged", "reason",
-                good ? "" : status_word(*ending), "message", good ? "" : end.message, "kind",
-                "hlpv", "name", spec->name, "metrics", metrics_object(spec->hlpv, &t), "samples",
-                samples_array(spec->hlpv, &t), "events", events_array(spec->hlpv, &t), "final",
-                final_object(spec->hlpv, &t), "holds", holds_array(spec->hlpv, &t), "warnings",
-                warnings_array(&t), "artifacts", "statistics", statistics_object(&t, wall_s, cpu_s),
-                "provenance", "version", PNEULAB_VERSION, "spec_hash", spec->hash);
+  *document = json_pack(
+      "{s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:[], s:o, s:{s:s, s:s}}",
+      "status", good ? "succeeded" : "diverged", "reason", good ? "" : status_word(*ending),
+      "message", good ? "" : end.message, "kind", "hlpv", "name", spec->name, "metrics",
+      metrics_object(spec->hlpv, &t), "samples", samples_array(spec->hlpv, &t), "events",
+      events_array(spec->hlpv, &t), "final", final_object(spec->hlpv, &t), "holds",
+      holds_array(spec->hlpv, &t), "model", model_object(spec->hlpv), "warnings",
+      warnings_array(&t), "artifacts", "statistics", statistics_object(&t, wall_s, cpu_s),
+      "provenance", "version", PNEULAB_VERSION, "spec_hash", spec->hash);
   if (!*document) {
     status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the result document");
   }

@@ -74,6 +74,20 @@ check_preset() {
   "${BIN:-.}/pneulab-solve" "$file" > "$work/$name.json" || failed=$((failed + 1))
 }
 
+# The job that infers the numbers has them in its model, those that presets give rounded.
+check_inferred() {
+  "${BIN:-.}/pneulab-solve" "$source/jobs/beast/$1-inferred.json" > "$work/$1-inferred.json" ||
+    failed=$((failed + 1))
+  local numbers='.model | [.mass_kg, .gamma_N_Pa, .rest_length_m, .modes.compressed.stiffness.coefficients_si[],
+    .modes.stretched.stiffness.coefficients_si[], .modes.stretched.rest_m, .transitions[0].when.h_m,
+    .transitions[0].reset.h_m, .transitions[0].reset.pressure_Pa, .transitions[1].when.h_m] | .[]'
+  local inferred preset count=0
+  while read -r inferred preset; do
+    near "$1: number $((count += 1)) of the model" "$preset" "$inferred" 2e-5
+  done < <(paste <(metric "$1-inferred" "$numbers") <(metric "$1" "$numbers"))
+  near "$1: numbers" "$count" 11 1e-9
+}
+
 # metric NAME PATH
 metric() {
   jq -r "$2" "$work/$1.json"
@@ -83,6 +97,10 @@ check_preset 20A-0.25 1 "$trigger_thick"
 check_preset 20A-0.18 1 "$trigger_thin"
 check_preset 30A-0.25 "$ratio" "$trigger_thick"
 check_preset 30A-0.18 "$ratio" "$trigger_thin"
+
+for name in 20A-0.18 20A-0.25 30A-0.18 30A-0.25; do
+  check_inferred $name
+done
 
 # What the inferred numbers come from is simulated again.
 near "rise from 0 to 3 psi" "$(metric 20A-0.18 '.holds[3].steady_extension_ratio')" 0.0591 1e-4

@@ -84,6 +84,39 @@ START_TEST(the_derivative_is_that_of_the_model) {
 }
 END_TEST
 
+/* Stiffness and rest from states of rest, which the derivative then leaves at rest. */
+START_TEST(states_of_rest_give_the_stiffness) {
+  struct job_spec spec;
+  struct error error;
+  static const char steady_modes[] =
+      "{\"low\": {\"rest\": \"1 mm\", \"stiffness\": {\"per\": \"kPa\", \"states\": [[\"10 kPa\", "
+      "\"3 mm\"], [\"-20 kPa\", \"-5 mm\"], [\"40 kPa\", \"20 mm\"]]}, \"damping\": \"6 N s/m\", "
+      "\"alpha\": \"-9 1/s\", \"beta\": \"9 1/s\"}, \"high\": {\"stiffness\": {\"slope\": [\"10 "
+      "kPa\", \"4 mm\"], \"states\": [[\"30 kPa\", \"50 mm\"]], \"times\": 2}, \"damping\": \"6 N "
+      "s/m\", \"alpha\": \"-9 1/s\", \"beta\": \"9 1/s\"}}";
+  static const char steady_transitions[] =
+      "[{\"from\": \"low\", \"to\": \"high\", \"when\": {\"h\": {\"steady\": \"40 kPa\"}, "
+      "\"direction\": \"rising\"}, \"reset\": {\"h\": {\"steady\": \"20 kPa\"}}}]";
+  ck_assert_msg(read_parts(steady_modes, steady_transitions, NULL, NULL, &spec, &error) ==
+                    STATUS_OK,
+                "%s", error.message);
+  static const double states[][2] = {{1e4, 3e-3}, {-2e4, -5e-3}, {4e4, 20e-3}};
+  for (int i = 0; i < 3; i++) {
+    const double x[HLPV_STATES] = {states[i][1], 0.0, states[i][0]};
+    double rate[HLPV_STATES];
+    hlpv_derivative(spec.hlpv, 0, states[i][0], x, rate);
+    ck_assert_double_eq_tol(rate[HLPV_VELOCITY], 0.0, 1e-9);
+    ck_assert_double_eq_tol(rate[HLPV_PRESSURE], 0.0, 1e-9);
+  }
+  /* k = gamma 10 kPa / 4 mm, twice; at rest 50 mm - 30 kPa 4 mm / 10 kPa */
+  suite_check_near(spec.hlpv->mode[1].stiffness.c[0], 2.0 * spec.hlpv->gamma * 1e4 / 4e-3);
+  suite_check_near(spec.hlpv->mode[1].rest, 38e-3);
+  suite_check_near(spec.hlpv->transition[0].level, 20e-3);
+  suite_check_near(spec.hlpv->transition[0].reset[HLPV_H].value, 38e-3 + 20.0 / 10.0 * 4e-3 / 2.0);
+  job_spec_release(&spec);
+}
+END_TEST
+
 /* Set-points at 0, 1, 1.5 and 9 s. */
 static const struct {
   const char *input;
@@ -147,6 +180,25 @@ static const struct {
      "[{\"from\": \"low\", \"to\": \"high\", \"when\": {\"h\": \"1 mm\", \"pressure\": \"1 "
      "kPa\", \"direction\": \"rising\"}}]",
      NULL, NULL, "/model/transitions/0/when", "not 2"},
+    {"{\"low\": {\"stiffness\": {\"per\": \"psi\", \"states\": [[\"1 kPa\", 0.5]]}, \"damping\": "
+     "\"1 N s/m\", \"alpha\": \"-1 1/s\", \"beta\": \"1 1/s\"}}",
+     "[]", NULL, NULL, "/model/modes/low/stiffness/states/0", "rest_length"},
+    {"{\"low\": {\"stiffness\": {\"per\": \"psi\", \"states\": [[\"1 kPa\", \"-1 mm\"]]}, "
+     "\"damping\": \"1 N s/m\", \"alpha\": \"-1 1/s\", \"beta\": \"1 1/s\"}}",
+     "[]", NULL, NULL, "/model/modes/low/stiffness", "positive stiffness"},
+    {"{\"low\": {\"stiffness\": {\"states\": [[\"1 kPa\", \"1 mm\"], [\"1 kPa\", \"2 mm\"]]}, "
+     "\"damping\": \"1 N s/m\", \"alpha\": \"-1 1/s\", \"beta\": \"1 1/s\"}}",
+     "[]", NULL, NULL, "/model/modes/low/stiffness", "same set-point"},
+    {"{\"low\": {\"stiffness\": {\"slope\": [\"1 kPa\", \"0 mm\"]}, \"damping\": \"1 N s/m\", "
+     "\"alpha\": \"-1 1/s\", \"beta\": \"1 1/s\"}}",
+     "[]", NULL, NULL, "/model/modes/low/stiffness", "positive stiffness"},
+    {"{\"low\": {\"stiffness\": {\"per\": \"psi\"}, \"damping\": \"1 N s/m\", \"alpha\": \"-1 "
+     "1/s\", \"beta\": \"1 1/s\"}}",
+     "[]", NULL, NULL, "/model/modes/low/stiffness", "\"coefficients\" is missing"},
+    {NULL,
+     "[{\"from\": \"low\", \"to\": \"high\", \"when\": {\"h\": \"20 mm\", \"direction\": "
+     "\"rising\"}, \"reset\": {\"h\": {}}}]",
+     NULL, NULL, "/model/transitions/0/reset", "steady"},
     {NULL, NULL, "{\"mode\": \"middle\"}", NULL, "/initial/mode", "no mode \"middle\""},
     {NULL, NULL, "{\"mode\": \"low\", \"h\": \"15 mm\"}", NULL, "/initial/h", "beyond the guard"},
     {NULL, NULL, "{\"mode\": \"low\", \"h\": \"14.06 mm\", \"velocity\": \"1 m/s\"}", NULL,
@@ -218,6 +270,7 @@ int main(void) {
   TCase *tcase = tcase_create("all");
   tcase_add_test(tcase, a_model_arrives_in_si_units);
   tcase_add_test(tcase, the_derivative_is_that_of_the_model);
+  tcase_add_test(tcase, states_of_rest_give_the_stiffness);
   tcase_add_loop_test(tcase, set_points_are_read, 0, sizeof profiles / sizeof *profiles);
   tcase_add_loop_test(tcase, refuses, 0, sizeof refusals / sizeof *refusals);
   tcase_add_test(tcase, a_mass_is_positive);
