@@ -111,6 +111,7 @@ enum status integrator_create(const struct hlpv_spec *spec, const double size[HL
   in->tolerance = N_VNew_Serial(HLPV_STATES, in->context);
   in->jacobian = SUNDenseMatrix(HLPV_STATES, HLPV_STATES, in->context);
   if (in->x && in->tolerance && in->jacobian) {
+    N_VEnableFusedOps_Serial(in->x, SUNTRUE); /* vectors of three cost little but the calls */
     N_VConst(0.0, in->x);
     for (int i = 0; i < HLPV_STATES; i++) {
       NV_Ith_S(in->tolerance, i) = spec->tolerance * size[i];

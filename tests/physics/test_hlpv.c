@@ -191,6 +191,36 @@ START_TEST(a_ringing_mode_follows_the_matrix_exponential) {
 }
 END_TEST
 
+/* Largest speed and settling time of one hold, by looking at the exact motion closely. */
+START_TEST(speed_and_settling_are_those_of_the_exact_motion) {
+  const double look = 1e-4;
+  struct job_spec spec;
+  struct hlpv_trajectory t;
+  read_beast(constant_stiffness, "\"input\": {\"hold\": [[\"0 s\", \"3 psi\"]]}, \"end\": \"3 s\"",
+             &spec);
+  simulate(&spec, &t);
+  const struct hlpv_hold *hold = &t.hold[0];
+  struct exact_input input = {.u = spec.hlpv->input.value[0]};
+  double speed = 0.0, settled = 0.0, x[HLPV_STATES];
+  exact_state(spec.hlpv, 0, &input, spec.hlpv->initial, 20.0, x);
+  double rest = x[HLPV_H];
+  for (int i = 1; i < 30000; i++) {
+    exact_state(spec.hlpv, 0, &input, spec.hlpv->initial, look * i, x);
+    speed = fmax(speed, fabs(x[HLPV_VELOCITY]));
+    settled = fabs(x[HLPV_H] - rest) > 0.02 * rest ? look * i : settled;
+  }
+  printf("peak speed %.9g m/s, settling %.9g s\n", t.peak_speed, hold->settling);
+  ck_assert_double_eq_tol(t.peak_speed, speed, 1e-5 * speed);
+  ck_assert_double_eq_tol(hold->peak_speed, speed, 1e-5 * speed);
+  ck_assert_double_eq_tol(hold->settling, settled, 1.01 * look);
+  ck_assert_double_eq_tol(hold->steady_h, rest, 1e-9 * rest);
+  ck_assert_double_eq_tol(hold->last[HLPV_H], rest, 1e-6 * rest);
+  ck_assert_uint_eq(t.hold_count, 1);
+  hlpv_trajectory_release(&t);
+  job_spec_release(&spec);
+}
+END_TEST
+
 /* ---- ramps and sinusoids ------------------------------------------------------------------ */
 
 START_TEST(a_ramp_follows_the_matrix_exponential) {
@@ -331,6 +361,7 @@ int main(void) {
   tcase_add_loop_test(tcase, held_set_points_follow_the_matrix_exponential, 0,
                       sizeof accuracies / sizeof *accuracies);
   tcase_add_test(tcase, a_ringing_mode_follows_the_matrix_exponential);
+  tcase_add_test(tcase, speed_and_settling_are_those_of_the_exact_motion);
   tcase_add_test(tcase, a_ramp_follows_the_matrix_exponential);
   tcase_add_test(tcase, a_sinusoid_follows_the_matrix_exponential);
   tcase_add_test(tcase, a_smaller_tolerance_is_a_smaller_error);

@@ -230,6 +230,38 @@ START_TEST(a_reset_beyond_a_guard_passes_it_at_once) {
 }
 END_TEST
 
+/* ---- doubts ------------------------------------------------------------------------------- */
+
+/* What is put in place of a number of the relay, and the warning that it leaves. */
+START_TEST(doubtful_models_leave_warnings) {
+  static const char *const phrases[] = {"8 psi", "outside the range", "no positive stiffness",
+                                        "negative damping"};
+  struct job_spec spec;
+  struct hlpv_trajectory t;
+  struct error error;
+  read_model(relay, "[]", "{\"mode\": \"up\"}", "0.1 s", &spec);
+  ck_assert_int_eq(run(&spec, &t, &error), STATUS_OK);
+  ck_assert_int_eq(t.warning_count, 1); /* alpha is 0 */
+  ck_assert(is_warned(&t, "does not settle"));
+  hlpv_trajectory_release(&t);
+  struct hlpv_mode *mode = &spec.hlpv->mode[0];
+  if (_i == 0) {
+    spec.hlpv->gamma = 5.577e-3; /* per kPa what is meant per psi */
+  } else if (_i == 1) {
+    mode->to = 99e3;
+  } else if (_i == 2) {
+    mode->stiffness.c[0] = -1.0;
+  } else {
+    mode->damping.c[0] = -1.0;
+  }
+  ck_assert_int_eq(run(&spec, &t, &error), STATUS_OK);
+  ck_assert_int_eq(t.warning_count, 2);
+  ck_assert_msg(is_warned(&t, phrases[_i]), "%s", t.warning[0]);
+  hlpv_trajectory_release(&t);
+  job_spec_release(&spec);
+}
+END_TEST
+
 /* ---- endings ------------------------------------------------------------------------------ */
 
 static bool at_once(void *context) {
@@ -281,6 +313,7 @@ int main(void) {
                       sizeof throws / sizeof *throws);
   tcase_add_loop_test(tcase, the_first_of_two_guards_is_taken, 0, 2);
   tcase_add_test(tcase, a_reset_beyond_a_guard_passes_it_at_once);
+  tcase_add_loop_test(tcase, doubtful_models_leave_warnings, 0, 4);
   tcase_add_test(tcase, limits_are_respected);
   tcase_add_test(tcase, a_state_without_bound_is_named);
   suite_add_tcase(suite, tcase);
