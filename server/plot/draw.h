@@ -39,7 +39,7 @@ enum status draw_tip3d(struct canvas *canvas, const struct plot_input *inputs, s
 /* Elongation, speed, pressure and set-point of a hybrid model over time, with its modes. */
 enum status draw_time(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                       struct error *error);
-/* Speed against elongation of a hybrid model, with its resets. */
+/* Speed against elongation of a hybrid model, with its guards and resets. */
 enum status draw_phase(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                        struct error *error);
 /* Elongation of a hybrid model at the end of each held set-point, up and down. */

@@ -36,14 +36,31 @@ static bool read_sample(const json_t *sample, struct hybrid *hybrid) {
   return json_is_string(json_object_get(sample, "mode"));
 }
 
-static void extend_span(struct hybrid *hybrid, const char *mode_name) {
+/* Whether a switch was made after the time `from` until `to`; *next: of the events, which are in
+ * order, the first after that. */
+static bool is_switched(const json_t *events, double from, double to, size_t *next) {
+  bool found = false;
+  for (; *next < json_array_size(events); ++*next) {
+    double time = data_number(json_array_get(events, *next), "time_s");
+    if (time > to) {
+      break;
+    }
+    found = found || time > from;
+  }
+  return found;
+}
+
+static void extend_span(struct hybrid *hybrid, const char *mode_name, const json_t *events,
+                        size_t *next) {
   size_t known = hybrid->mode_count, mode = find_mode(hybrid, mode_name), at = hybrid->count;
   struct hybrid_span *last = hybrid->span_count ? &hybrid->span[hybrid->span_count - 1] : NULL;
   double time = hybrid->value[HYBRID_TIME][at];
+  bool switched = false;
   if (last) {
+    switched = is_switched(events, hybrid->value[HYBRID_TIME][at - 1], time, next);
     last->ends[1].x = time;
   }
-  if (!last || last->mode != mode) {
+  if (!last || last->mode != mode || switched) {
     last = &hybrid->span[hybrid->span_count++];
     *last = (struct hybrid_span){.first = at,
                                  .mode = mode,
@@ -55,7 +72,8 @@ static void extend_span(struct hybrid *hybrid, const char *mode_name) {
 
 enum status hybrid_read(const json_t *result, struct hybrid *hybrid, struct error *error) {
   const json_t *samples = json_object_get(result, "samples");
-  size_t most = json_array_size(samples), index;
+  const json_t *events = json_object_get(result, "events");
+  size_t most = json_array_size(samples), next = 0, index;
   const json_t *sample;
   *hybrid = (struct hybrid){.count = 0};
   bool room = true;
@@ -70,7 +88,7 @@ enum status hybrid_read(const json_t *result, struct hybrid *hybrid, struct erro
   }
   json_array_foreach(samples, index, sample) {
     if (read_sample(sample, hybrid)) {
-      extend_span(hybrid, json_string_value(json_object_get(sample, "mode")));
+      extend_span(hybrid, json_string_value(json_object_get(sample, "mode")), events, &next);
       hybrid->count++;
     }
   }
@@ -118,6 +136,14 @@ enum status hybrid_curve(const struct hybrid *hybrid, enum hybrid_quantity x,
     }
   }
   return STATUS_OK;
+}
+
+double hybrid_reach(const struct hybrid *hybrid, enum hybrid_quantity quantity) {
+  double reach = 0;
+  for (size_t i = 0; i < hybrid->count; i++) {
+    reach = fmax(reach, fabs(hybrid->value[quantity][i]));
+  }
+  return 20 * (reach > 0 ? reach : 1);
 }
 
 struct colour hybrid_colour(size_t mode) {

@@ -16,7 +16,7 @@ enum hybrid_quantity {
   HYBRID_QUANTITIES
 };
 
-/* Samples `first` to `end` - 1, all in one mode. */
+/* Samples `first` to `end` - 1, all in one mode and without a switch between them. */
 struct hybrid_span {
   size_t first, end;
   size_t mode;          /* of hybrid.mode */
@@ -43,6 +43,10 @@ void hybrid_release(struct hybrid *hybrid);
 enum status hybrid_curve(const struct hybrid *hybrid, enum hybrid_quantity x,
                          enum hybrid_quantity y, size_t first, size_t end, struct point **points,
                          size_t *count, struct error *error);
+
+/* A height that every axis which shows the quantity ends below, so that lines up to it on both
+ * sides of zero cross the picture, and few enough pixels for cairo. */
+double hybrid_reach(const struct hybrid *hybrid, enum hybrid_quantity quantity);
 
 /* Colours of a mode: of its curves, and as a band behind them. */
 struct colour hybrid_colour(size_t mode);

@@ -5,7 +5,7 @@
 #include "server/plot/draw.h"
 #include "server/plot/hybrid.h"
 
-enum { JUMPS_MOST = 60 };
+enum { JUMPS_MOST = 60, GUARDS_MOST = 16 };
 
 /* The states before and after a switch. */
 struct jump {
@@ -29,6 +29,35 @@ static size_t read_jumps(const json_t *result, struct jump jumps[JUMPS_MOST]) {
     count += complete;
   }
   return count;
+}
+
+/* The guards that are levels of h, as upright lines. */
+static size_t read_guards(const json_t *result, double reach, struct point lines[GUARDS_MOST][2]) {
+  const json_t *transitions = json_object_get(json_object_get(result, "model"), "transitions");
+  size_t count = 0;
+  for (size_t i = 0; i < json_array_size(transitions) && count < GUARDS_MOST; i++) {
+    const json_t *when = json_object_get(json_array_get(transitions, i), "when");
+    double level = 1e3 * data_number(when, "h_m");
+    if (isfinite(level)) {
+      lines[count][0] = (struct point){level, -reach};
+      lines[count++][1] = (struct point){level, reach};
+    }
+  }
+  return count;
+}
+
+static size_t add_guards(struct point lines[GUARDS_MOST][2], size_t guards,
+                         struct chart_series *series) {
+  for (size_t i = 0; i < guards; i++) {
+    series[i] = (struct chart_series){.points = lines[i],
+                                      .count = 2,
+                                      .guide = true,
+                                      .colour = colour_notice,
+                                      .width = 1.4,
+                                      .dash = DASH_LONG,
+                                      .name = i == 0 ? "guard" : NULL};
+  }
+  return guards;
 }
 
 /* The last switch before the first sample of a span, or the first one after its last, if that is
@@ -102,7 +131,8 @@ static enum status add_spans(const struct hybrid *hybrid, const struct jump jump
 enum status draw_phase(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                        struct error *error) {
   (void)count;
-  struct chart_series series[HYBRID_SPANS + 2 * JUMPS_MOST];
+  struct chart_series series[GUARDS_MOST + HYBRID_SPANS + 2 * JUMPS_MOST];
+  struct point lines[GUARDS_MOST][2];
   struct jump jumps[JUMPS_MOST];
   struct point *points[HYBRID_SPANS] = {NULL};
   size_t jump_count = read_jumps(inputs[0].result, jumps), used = 0;
@@ -110,6 +140,8 @@ enum status draw_phase(struct canvas *canvas, const struct plot_input *inputs, s
   struct hybrid hybrid;
   enum status status = hybrid_read(inputs[0].result, &hybrid, error);
   if (status == STATUS_OK) {
+    double reach = hybrid_reach(&hybrid, HYBRID_VELOCITY);
+    used = add_guards(lines, read_guards(inputs[0].result, reach, lines), series);
     status = add_spans(&hybrid, jumps, jump_count, points, series, &used, error);
   }
   if (status != STATUS_OK) {
@@ -126,7 +158,7 @@ enum status draw_phase(struct canvas *canvas, const struct plot_input *inputs, s
                                            .count = 1,
                                            .colour = colour_notice,
                                            .marker = MARKER_CIRCLE,
-                                           .name = i == 0 ? "guard passed" : NULL};
+                                           .name = i == 0 ? "switch" : NULL};
   }
   data_subtitle(&inputs[0], subtitle);
   data_notice(inputs[0].result, notice);

@@ -1,3 +1,4 @@
+#include <math.h>
 #include <stdlib.h>
 
 #include "server/plot/data.h"
@@ -6,15 +7,15 @@
 
 enum { PANELS = 3, CURVES = 2, EVENTS_MOST = 60 };
 
-/* The upright lines of the switches: cut at the axes, they need not know their range. */
-static size_t read_events(const json_t *result, struct point lines[EVENTS_MOST][2]) {
+/* The upright lines of the switches, as high as `reach` on both sides of zero. */
+static size_t read_events(const json_t *result, double reach, struct point lines[EVENTS_MOST][2]) {
   const json_t *events = json_object_get(result, "events");
   size_t count = 0;
   for (size_t i = 0; i < json_array_size(events) && count < EVENTS_MOST; i++) {
     double time = data_number(json_array_get(events, i), "time_s");
     if (time >= 0) {
-      lines[count][0] = (struct point){time, -1e9};
-      lines[count++][1] = (struct point){time, 1e9};
+      lines[count][0] = (struct point){time, -reach};
+      lines[count++][1] = (struct point){time, reach};
     }
   }
   return count;
@@ -66,8 +67,8 @@ enum status draw_time(struct canvas *canvas, const struct plot_input *inputs, si
   static const char *const labels[PANELS] = {"h (mm)", "h' (m/s)", "Pressure (kPa)"};
   (void)count;
   struct chart_series series[PANELS][HYBRID_SPANS + EVENTS_MOST + CURVES];
-  struct point lines[EVENTS_MOST][2], *points[PANELS + 1] = {NULL};
-  size_t counts[PANELS + 1] = {0}, events = read_events(inputs[0].result, lines);
+  struct point lines[PANELS][EVENTS_MOST][2], *points[PANELS + 1] = {NULL};
+  size_t counts[PANELS + 1] = {0};
   char subtitle[DATA_HEADING], notice[DATA_HEADING];
   struct hybrid hybrid;
   struct chart charts[PANELS];
@@ -80,8 +81,12 @@ enum status draw_time(struct canvas *canvas, const struct plot_input *inputs, si
   }
   data_subtitle(&inputs[0], subtitle);
   data_notice(inputs[0].result, notice);
+  const double reaches[PANELS] = {
+      hybrid_reach(&hybrid, HYBRID_H), hybrid_reach(&hybrid, HYBRID_VELOCITY),
+      fmax(hybrid_reach(&hybrid, HYBRID_PRESSURE), hybrid_reach(&hybrid, HYBRID_SET_POINT))};
   for (size_t i = 0; i < PANELS; i++) {
-    size_t used = add_background(&hybrid, lines, events, i == 0, series[i]);
+    size_t events = read_events(inputs[0].result, reaches[i], lines[i]);
+    size_t used = add_background(&hybrid, lines[i], events, i == 0, series[i]);
     bool pressure = i + 1 == PANELS;
     if (pressure) {
       series[i][used++] = (struct chart_series){.points = points[PANELS],
