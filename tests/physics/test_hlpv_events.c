@@ -300,6 +300,24 @@ START_TEST(a_state_without_bound_is_named) {
 }
 END_TEST
 
+/* 0.5 us of a period, while the pressure takes 100 s: the speed is 10^9 times that of the latter.
+ */
+START_TEST(fast_ringing_is_no_instability) {
+  struct job_spec spec;
+  struct hlpv_trajectory t;
+  struct error error;
+  read_model(relay, "[]", "{\"mode\": \"up\", \"h\": \"1 mm\"}", "10 us", &spec);
+  struct hlpv_mode *mode = &spec.hlpv->mode[0];
+  mode->stiffness.c[0] = 1.6e14;
+  mode->damping.c[0] = 0.0;
+  mode->alpha.c[0] = -0.01;
+  ck_assert_int_eq(run(&spec, &t, &error), STATUS_OK);
+  ck_assert_double_eq_tol(t.peak_speed, 1e-3 * sqrt(1.6e14), 1.0);
+  hlpv_trajectory_release(&t);
+  job_spec_release(&spec);
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("physics: switches of hybrid models");
   TCase *tcase = tcase_create("all");
@@ -316,6 +334,7 @@ int main(void) {
   tcase_add_loop_test(tcase, doubtful_models_leave_warnings, 0, 4);
   tcase_add_test(tcase, limits_are_respected);
   tcase_add_test(tcase, a_state_without_bound_is_named);
+  tcase_add_test(tcase, fast_ringing_is_no_instability);
   suite_add_tcase(suite, tcase);
   return suite_run(suite);
 }
