@@ -9,6 +9,7 @@ const NAMES = {
   chord_angle_deg: ['Angle of the base-to-tip line', '°'],
   twist_angle_deg: ['Twist', '°'],
   side_bending_angle_deg: ['Sideways bending', '°'],
+  turn_angle_deg: ['Bending in any plane', '°'],
   end_bending_angle_deg: ['Tilt of the end section', '°'],
   end_twist_angle_deg: ['Twist of the end section', '°'],
   reach_mm: ['Distance from base to tip', 'mm'],

@@ -148,6 +148,7 @@ static void set_real(json_t *object, const char *key, double value) {
 static void set_spatial(json_t *o, const struct spatial *s) {
   set_real(o, "twist_angle_deg", s->twist / degree);
   set_real(o, "side_bending_angle_deg", s->side_bending / degree);
+  set_real(o, "turn_angle_deg", s->turn / degree);
   set_real(o, "end_bending_angle_deg", s->end_bending / degree);
   set_real(o, "end_twist_angle_deg", s->end_twist / degree);
   set_real(o, "reach_mm", 1e3 * s->reach);

@@ -42,6 +42,7 @@ enum status spatial_measure(const struct mesh *mesh, const double *u, struct spa
     spatial->twist += turn[0];
     spatial->bending += turn[1];
     spatial->side_bending += turn[2];
+    spatial->turn += hypot(turn[1], turn[2]);
   }
   spatial->end_bending = acos(fmax(-1, fmin(1, now[0])));
   double twist = twist_of(now);

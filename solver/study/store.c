@@ -1,9 +1,11 @@
 #include "solver/study/store.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -25,10 +27,22 @@ static char *join(const char *first, const char *second) {
   return path;
 }
 
+/* Keeps other studies out of the folder until it is closed, which a killed process does, too. */
+static enum status lock(struct member_store *store, struct error *error) {
+  store->lock = open(store->directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (store->lock >= 0 && flock(store->lock, LOCK_EX | LOCK_NB) == 0) {
+    return STATUS_OK;
+  }
+  bool taken = store->lock >= 0 && errno == EWOULDBLOCK;
+  return error_set(error, STATUS_IO, NULL, "%s %s", store->directory,
+                   taken ? "is in use by another study: wait for its end, or name another folder"
+                         : strerror(errno));
+}
+
 enum status member_store_open(const char *out_dir, struct member_store *store,
                               struct error *error) {
   const char *temporary = getenv("TMPDIR");
-  *store = (struct member_store){.temporary = out_dir == NULL};
+  *store = (struct member_store){.temporary = out_dir == NULL, .lock = -1};
   store->directory =
       out_dir ? join(out_dir, "members")
               : join(temporary && temporary[0] ? temporary : "/tmp", "pneulab-study-XXXXXX");
@@ -36,7 +50,8 @@ enum status member_store_open(const char *out_dir, struct member_store *store,
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for a path");
   }
   if (out_dir) {
-    return make_folder(store->directory, error);
+    enum status status = make_folder(store->directory, error);
+    return status == STATUS_OK ? lock(store, error) : status;
   }
   if (!mkdtemp(store->directory)) {
     store->temporary = false;
@@ -55,8 +70,11 @@ void member_store_close(struct member_store *store, const struct study *study) {
     }
     rmdir(store->directory);
   }
+  if (store->lock >= 0) {
+    close(store->lock);
+  }
   free(store->directory);
-  *store = (struct member_store){.directory = NULL};
+  *store = (struct member_store){.lock = -1};
 }
 
 char *member_store_path(const struct member_store *store, const struct study_member *member,

@@ -11,9 +11,11 @@ enum member_file { MEMBER_JOB, MEMBER_PART, MEMBER_LOG, MEMBER_RESULT, MEMBER_FI
 struct member_store {
   char *directory;
   bool temporary; /* goes with everything in it */
+  int lock;       /* keeps other studies out of a folder that stays, or -1 */
 };
 
-/* Opens DIR/members, made when missing, or a temporary folder for NULL. The caller calls
+/* Opens DIR/members, made when missing, or a temporary folder for NULL. One study at a time has
+ * the use of a folder: for a second one it is STATUS_IO. The caller calls
  * member_store_close in either case. STATUS_OK, STATUS_IO, STATUS_NO_MEMORY. */
 enum status member_store_open(const char *out_dir, struct member_store *store, struct error *error);
 

@@ -81,6 +81,7 @@ START_TEST(rods_of_constant_curvature) {
   ck_assert_double_eq_tol(s.twist, w[0], 1e-6);
   ck_assert_double_eq_tol(s.bending, w[1], 1e-6);
   ck_assert_double_eq_tol(s.side_bending, w[2], 1e-6);
+  ck_assert_double_eq_tol(s.turn, hypot(w[1], w[2]), 1e-6);
   /* The quaternion of the end section is (cos |w|/2, sin |w|/2 w/|w|). */
   double size = vec3_norm(w), half = 0.5 * size;
   double twist = size > 0 ? 2 * atan2(sin(half) * w[0] / size, cos(half)) : 0;
