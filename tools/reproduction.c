@@ -72,7 +72,47 @@ static const struct work *work_of(const struct works *works, const char *from) {
   return NULL;
 }
 
-static bool write_figure(const struct works *works, const json_t *entry, const char *directory) {
+/* Index of the member called `name`, or -1. */
+static int member_index(const json_t *result, const char *name) {
+  size_t index;
+  const json_t *member;
+  json_array_foreach(json_object_get(result, "members"), index, member) {
+    const char *its = json_string_value(json_object_get(member, "name"));
+    if (its && strcmp(its, name) == 0) {
+      return (int)index;
+    }
+  }
+  return -1;
+}
+
+/* The study's result with the published values of its members' metrics beside it, as the plot
+ * "metric" shows them. A new reference. */
+static json_t *with_published(const json_t *result, const char *study, const json_t *data) {
+  json_t *copy = json_copy((json_t *)result), *published = json_array();
+  size_t index;
+  const json_t *entry;
+  json_array_foreach(json_object_get(data, "values"), index, entry) {
+    const json_t *ours = json_object_get(entry, "ours");
+    const json_t *value = json_object_get(entry, "published");
+    const char *from = json_string_value(json_object_get(ours, "from"));
+    const char *pointer = json_string_value(json_object_get(ours, "value"));
+    size_t length = strlen(study);
+    if (!from || strncmp(from, study, length) != 0 || from[length] != '#' || !pointer ||
+        strncmp(pointer, "/metrics/", 9) != 0 || !json_is_number(value)) {
+      continue;
+    }
+    int member = member_index(result, from + length + 1);
+    if (member >= 0) {
+      json_array_append_new(published, json_pack("{s:i, s:s, s:O}", "member", member, "metric",
+                                                 pointer + 9, "value", value));
+    }
+  }
+  json_object_set_new(copy, "published", published);
+  return copy;
+}
+
+static bool write_figure(const struct works *works, const json_t *data, const json_t *entry,
+                         const char *directory) {
   const char *from = json_string_value(json_object_get(entry, "from"));
   const char *plot = json_string_value(json_object_get(entry, "plot"));
   const char *name = json_string_value(json_object_get(entry, "file"));
@@ -87,7 +127,11 @@ static bool write_figure(const struct works *works, const json_t *entry, const c
   if (!result) {
     return true; /* the document says that it is missing */
   }
-  return write_png(work, result, plot, json_string_value(json_object_get(entry, "metric")), path);
+  json_t *shown = with_published(result, from, data);
+  bool good =
+      write_png(work, shown, plot, json_string_value(json_object_get(entry, "metric")), path);
+  json_decref(shown);
+  return good;
 }
 
 bool write_plots(const struct works *works, const json_t *data, const char *figures) {
@@ -107,7 +151,7 @@ bool write_plots(const struct works *works, const json_t *data, const char *figu
     }
   }
   json_array_foreach(json_object_get(data, "figures"), index, entry) {
-    good = write_figure(works, entry, figures) && good;
+    good = write_figure(works, data, entry, figures) && good;
   }
   return good;
 }
