@@ -64,6 +64,7 @@ job["load"] = {"pressure": {"to": "0.05 kPa", "steps": 1}}
 job["accuracy"] = "fast"
 job.pop("mesh", None)
 job.pop("metrics", None)
+job.pop("measured", None)
 json.dump(job, sys.stdout)
 PYTHON
   [ -s deck.json ] || continue
