@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "server/plot/chart.h"
+#include "tools/figure.h"
 #include "tools/performance.h"
 
 enum { FIGURE_WIDTH = 640, FIGURE_HEIGHT = 420, POINTS_MAX = 1000, SERIES_MAX = 8 };
@@ -26,14 +27,7 @@ static bool write_chart(const struct chart *chart, const char *directory, const 
     fprintf(stderr, "performance: %s: %s\n", path, error.message);
     return false;
   }
-  FILE *file = fopen(path, "wb");
-  good = file && fwrite(png, 1, size, file) == size;
-  good = file && fclose(file) == 0 && good;
-  if (!good) {
-    perror(path);
-  }
-  free(png);
-  return good;
+  return figure_save(png, size, path);
 }
 
 /* ---- time against unknowns ---- */

@@ -16,6 +16,7 @@
 
 #include "server/plot/plot.h"
 #include "solver/base/clock.h"
+#include "tools/figure.h"
 #include "tools/reproduction.h"
 #include "tools/template.h"
 
@@ -44,21 +45,7 @@ static bool write_png(const struct work *work, const json_t *result, const char 
                              .title = json_string_value(json_object_get(result, "name")),
                              .spec_hash = work->hash,
                              .metric = metric};
-  unsigned char *png = NULL;
-  size_t size = 0;
-  struct error error = {.status = STATUS_OK};
-  if (plot_render(plot, &input, 1, FIGURE_WIDTH, FIGURE_HEIGHT, &png, &size, &error) != STATUS_OK) {
-    fprintf(stderr, "reproduction: %s: %s\n", path, error.message);
-    return false;
-  }
-  FILE *file = fopen(path, "wb");
-  bool good = file && fwrite(png, 1, size, file) == size;
-  good = file && fclose(file) == 0 && good;
-  if (!good) {
-    perror(path);
-  }
-  free(png);
-  return good;
+  return figure_write("reproduction", plot, &input, FIGURE_WIDTH, FIGURE_HEIGHT, path);
 }
 
 static const struct work *work_of(const struct works *works, const char *from) {

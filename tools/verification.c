@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "server/plot/plot.h"
+#include "tools/figure.h"
 #include "tools/template.h"
 
 enum { FIGURE_WIDTH = 560, FIGURE_HEIGHT = 380, RESULTS_MAX = 100 };
@@ -138,21 +138,7 @@ static void print_case(FILE *out, const json_t *r) {
 
 static bool write_figure(const json_t *r, const char *plot, const char *path) {
   struct plot_input input = {.result = r, .title = text_of(member(r, "case"), "title")};
-  unsigned char *png = NULL;
-  size_t size = 0;
-  struct error error = {0};
-  if (plot_render(plot, &input, 1, FIGURE_WIDTH, FIGURE_HEIGHT, &png, &size, &error) != STATUS_OK) {
-    fprintf(stderr, "verification: %s: %s\n", path, error.message);
-    return false;
-  }
-  FILE *file = fopen(path, "wb");
-  bool good = file && fwrite(png, 1, size, file) == size;
-  good = file && fclose(file) == 0 && good;
-  if (!good) {
-    perror(path);
-  }
-  free(png);
-  return good;
+  return figure_write("verification", plot, &input, FIGURE_WIDTH, FIGURE_HEIGHT, path);
 }
 
 static bool write_figures(const struct results *results, const char *directory) {

@@ -1,5 +1,6 @@
 #include "solver/base/clock.h"
 
+#include <sys/resource.h>
 #include <time.h>
 
 static double read_clock(clockid_t id) {
@@ -14,4 +15,10 @@ double clock_cpu_s(void) {
 
 double clock_wall_s(void) {
   return read_clock(CLOCK_MONOTONIC);
+}
+
+double clock_peak_memory_MB(void) {
+  struct rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  return 1e-3 * 1.024 * (double)usage.ru_maxrss;
 }

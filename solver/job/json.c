@@ -1,5 +1,6 @@
 #include "solver/job/json.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -233,5 +234,11 @@ const char *json_type_phrase(const json_t *value) {
     return "true or false";
   default:
     return "null";
+  }
+}
+
+void json_set_finite(json_t *object, const char *key, double value) {
+  if (isfinite(value)) {
+    json_object_set_new(object, key, json_real(value));
   }
 }

@@ -33,6 +33,9 @@ size_t json_pointer_key(struct json_pointer *pointer, const char *key);
 size_t json_pointer_index(struct json_pointer *pointer, size_t index);
 void json_pointer_pop(struct json_pointer *pointer, size_t mark);
 
+/* Stores a number under `key` of an object unless it is not finite. */
+void json_set_finite(json_t *object, const char *key, double value);
+
 /* "an object", "a string", ... of a value. Static storage. */
 const char *json_type_phrase(const json_t *value);
 

@@ -4,18 +4,19 @@
 #include <stdio.h>
 
 #include "solver/base/clock.h"
+#include "solver/job/json.h"
 #include "solver/material/document.h"
 #include "solver/material/law.h"
 #include "solver/material/stability.h"
 
 static json_t *sample_object(const struct material_spec *material, double stretch) {
   json_t *o = json_object();
-  document_set(o, "stretch", stretch);
-  document_set(o, "strain", stretch - 1.0);
+  json_set_finite(o, "stretch", stretch);
+  json_set_finite(o, "strain", stretch - 1.0);
   for (enum deformation d = 0; d < DEFORMATION_COUNT; d++) {
     char key[40];
     snprintf(key, sizeof key, "%s_stress_MPa", deformation_word(d));
-    document_set(o, key, 1e-6 * law_stress(material, d, stretch, NULL));
+    json_set_finite(o, key, 1e-6 * law_stress(material, d, stretch, NULL));
   }
   return o;
 }
@@ -33,12 +34,12 @@ static json_t *metrics_object(const struct job_spec *spec) {
   const struct material_spec *material = &spec->material;
   double modulus = material_shear_modulus(material);
   json_t *metrics = json_object();
-  document_set(metrics, "initial_shear_modulus_MPa", 1e-6 * modulus);
-  document_set(metrics, "initial_youngs_modulus_MPa", 3e-6 * modulus);
-  document_set(metrics, "bulk_modulus_MPa", 1e-6 * material->bulk_ratio * modulus);
-  document_set(metrics, "stress_at_100_percent_MPa",
-               1e-6 * law_stress(material, DEFORMATION_UNIAXIAL, 2.0, NULL));
-  document_set(metrics, "stable_to_stretch", peak_of(material, spec->curve.to));
+  json_set_finite(metrics, "initial_shear_modulus_MPa", 1e-6 * modulus);
+  json_set_finite(metrics, "initial_youngs_modulus_MPa", 3e-6 * modulus);
+  json_set_finite(metrics, "bulk_modulus_MPa", 1e-6 * material->bulk_ratio * modulus);
+  json_set_finite(metrics, "stress_at_100_percent_MPa",
+                  1e-6 * law_stress(material, DEFORMATION_UNIAXIAL, 2.0, NULL));
+  json_set_finite(metrics, "stable_to_stretch", peak_of(material, spec->curve.to));
   return metrics;
 }
 

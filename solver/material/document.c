@@ -1,25 +1,14 @@
 #include "solver/material/document.h"
 
-#include <math.h>
-#include <sys/resource.h>
-
 #include "solver/base/clock.h"
-
-void document_set(json_t *object, const char *key, double value) {
-  if (isfinite(value)) {
-    json_object_set_new(object, key, json_real(value));
-  }
-}
 
 json_t *document_make(const struct job_spec *spec, const char *kind, enum status ending,
                       const struct error *error, struct document_parts *parts) {
   bool good = ending == STATUS_OK;
-  struct rusage usage;
-  getrusage(RUSAGE_SELF, &usage);
   json_t *statistics =
       json_pack("{s:i, s:f, s:f, s:f}", "iterations", parts->iterations, "wall_s",
                 clock_wall_s() - parts->wall_s, "cpu_s", clock_cpu_s() - parts->cpu_s,
-                "peak_memory_MB", 1e-3 * 1.024 * (double)usage.ru_maxrss);
+                "peak_memory_MB", clock_peak_memory_MB());
   return json_pack("{s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:[], s:o, s:{s:s, s:s}}", "status",
                    good ? "succeeded" : "diverged", "reason", good ? "" : status_word(ending),
                    "message", good ? "" : error->message, "kind", kind, "name", spec->name,

@@ -17,7 +17,4 @@ struct document_parts {
 json_t *document_make(const struct job_spec *spec, const char *kind, enum status ending,
                       const struct error *error, struct document_parts *parts);
 
-/* Stores a number under `key` unless it is not finite. */
-void document_set(json_t *object, const char *key, double value);
-
 #endif

@@ -6,6 +6,7 @@
 
 #include "solver/base/clock.h"
 #include "solver/base/text.h"
+#include "solver/job/json.h"
 #include "solver/job/tensile.h"
 #include "solver/material/document.h"
 #include "solver/material/regression.h"
@@ -54,9 +55,9 @@ static double shear_half_width(const struct regression *r) {
 
 static void set_with_error(json_t *metrics, const char *key, double value, double half_width) {
   char name[60];
-  document_set(metrics, key, value);
+  json_set_finite(metrics, key, value);
   snprintf(name, sizeof name, "%s_error", key);
-  document_set(metrics, name, half_width);
+  json_set_finite(metrics, name, half_width);
 }
 
 static json_t *metrics_object(const struct fit *fit) {
@@ -72,12 +73,12 @@ static json_t *metrics_object(const struct fit *fit) {
   }
   set_with_error(metrics, "initial_shear_modulus_MPa", 1e-6 * material_shear_modulus(&r->material),
                  1e-6 * shear_half_width(r));
-  document_set(metrics, "r_squared", r->r_squared);
-  document_set(metrics, "rmse_MPa", 1e-6 * r->rmse);
-  document_set(metrics, "points", (double)fit->curve.count);
-  document_set(metrics, "strain_from", fit->low);
-  document_set(metrics, "strain_to", fit->high);
-  document_set(metrics, "condition_number", r->condition);
+  json_set_finite(metrics, "r_squared", r->r_squared);
+  json_set_finite(metrics, "rmse_MPa", 1e-6 * r->rmse);
+  json_set_finite(metrics, "points", (double)fit->curve.count);
+  json_set_finite(metrics, "strain_from", fit->low);
+  json_set_finite(metrics, "strain_to", fit->high);
+  json_set_finite(metrics, "condition_number", r->condition);
   return metrics;
 }
 
@@ -90,7 +91,7 @@ static json_t *coefficients_array(const struct fit *fit) {
     json_t *o = json_pack("{s:s, s:s, s:f, s:b}", "name", fit_coefficient_name(&fit->spec->fit, i),
                           "unit", exponent ? "1" : "MPa", "value", unit * r->coefficient[i],
                           "at_bound", r->at_bound[i]);
-    document_set(o, "half_width", unit * regression_half_width(r, i));
+    json_set_finite(o, "half_width", unit * regression_half_width(r, i));
     json_array_append_new(array, o);
   }
   return array;
@@ -101,12 +102,13 @@ static json_t *samples_array(const struct fit *fit) {
   for (size_t i = 0; i < fit->curve.count; i++) {
     double stretch = 1.0 + fit->curve.strain[i];
     json_t *o = json_object();
-    document_set(o, "strain", fit->curve.strain[i]);
-    document_set(o, "stretch", stretch);
-    document_set(o, "measured_stress_MPa", 1e-6 * fit->curve.stress[i]);
-    document_set(o, "fitted_stress_MPa",
-                 1e-6 * law_stress(&fit->regression.material, DEFORMATION_UNIAXIAL, stretch, NULL));
-    document_set(o, "band_MPa", 1e-6 * regression_band(&fit->regression, stretch));
+    json_set_finite(o, "strain", fit->curve.strain[i]);
+    json_set_finite(o, "stretch", stretch);
+    json_set_finite(o, "measured_stress_MPa", 1e-6 * fit->curve.stress[i]);
+    json_set_finite(o, "fitted_stress_MPa",
+                    1e-6 *
+                        law_stress(&fit->regression.material, DEFORMATION_UNIAXIAL, stretch, NULL));
+    json_set_finite(o, "band_MPa", 1e-6 * regression_band(&fit->regression, stretch));
     json_array_append_new(samples, o);
   }
   return samples;

@@ -1,7 +1,8 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/resource.h>
+#include "solver/base/clock.h"
+#include "solver/job/json.h"
 #include "solver/mesh/actuator.h"
 #include "solver/post/fit.h"
 #include "solver/post/result_internal.h"
@@ -138,21 +139,15 @@ enum status result_add(struct result *r, const struct path_point *point) {
   return r->export ? export_add(r->export, state, point->pressure, &r->failure) : STATUS_OK;
 }
 
-static void set_real(json_t *object, const char *key, double value) {
-  if (isfinite(value)) {
-    json_object_set_new(object, key, json_real(value));
-  }
-}
-
 /* How the body lies in space. */
 static void set_spatial(json_t *o, const struct spatial *s) {
-  set_real(o, "twist_angle_deg", s->twist / degree);
-  set_real(o, "side_bending_angle_deg", s->side_bending / degree);
-  set_real(o, "turn_angle_deg", s->turn / degree);
-  set_real(o, "end_bending_angle_deg", s->end_bending / degree);
-  set_real(o, "end_twist_angle_deg", s->end_twist / degree);
-  set_real(o, "reach_mm", 1e3 * s->reach);
-  set_real(o, "contraction_pct", 100 * s->contraction);
+  json_set_finite(o, "twist_angle_deg", s->twist / degree);
+  json_set_finite(o, "side_bending_angle_deg", s->side_bending / degree);
+  json_set_finite(o, "turn_angle_deg", s->turn / degree);
+  json_set_finite(o, "end_bending_angle_deg", s->end_bending / degree);
+  json_set_finite(o, "end_twist_angle_deg", s->end_twist / degree);
+  json_set_finite(o, "reach_mm", 1e3 * s->reach);
+  json_set_finite(o, "contraction_pct", 100 * s->contraction);
 }
 
 /* Forces and pressures of contact; for a body that can touch nothing there are none. */
@@ -160,34 +155,34 @@ static void set_contact(json_t *o, const struct sample *s) {
   if (!s->touching) {
     return;
   }
-  set_real(o, "contact_force_N", s->contact_force);
-  set_real(o, "contact_area_mm2", 1e6 * s->contact_area);
-  set_real(o, "max_contact_pressure_kPa", 1e-3 * s->contact_traction);
+  json_set_finite(o, "contact_force_N", s->contact_force);
+  json_set_finite(o, "contact_area_mm2", 1e6 * s->contact_area);
+  json_set_finite(o, "max_contact_pressure_kPa", 1e-3 * s->contact_traction);
   for (int k = 0; k < s->plane_count; k++) {
     char key[32];
     snprintf(key, sizeof key, "plane_%d_force_N", k + 1);
-    set_real(o, key, s->plane_force[k]);
+    json_set_finite(o, key, s->plane_force[k]);
   }
 }
 
 static void set_stress(json_t *o, const struct stress_peak *s) {
-  set_real(o, "max_von_mises_kPa", 1e-3 * s->von_mises);
-  set_real(o, "max_principal_stress_kPa", 1e-3 * s->principal);
+  json_set_finite(o, "max_von_mises_kPa", 1e-3 * s->von_mises);
+  json_set_finite(o, "max_principal_stress_kPa", 1e-3 * s->principal);
 }
 
 static json_t *sample_object(const struct sample *s) {
   json_t *o = json_object();
-  set_real(o, "pressure_kPa", 1e-3 * s->pressure);
-  set_real(o, "bending_angle_deg", s->shape.bending_angle / degree);
-  set_real(o, "chord_angle_deg", s->shape.chord_angle / degree);
-  set_real(o, "end_face_angle_deg", s->shape.end_face_angle / degree);
-  set_real(o, "tip_x_mm", 1e3 * s->shape.tip[0]);
-  set_real(o, "tip_y_mm", 1e3 * s->shape.tip[1]);
-  set_real(o, "tip_z_mm", 1e3 * s->shape.tip[2]);
+  json_set_finite(o, "pressure_kPa", 1e-3 * s->pressure);
+  json_set_finite(o, "bending_angle_deg", s->shape.bending_angle / degree);
+  json_set_finite(o, "chord_angle_deg", s->shape.chord_angle / degree);
+  json_set_finite(o, "end_face_angle_deg", s->shape.end_face_angle / degree);
+  json_set_finite(o, "tip_x_mm", 1e3 * s->shape.tip[0]);
+  json_set_finite(o, "tip_y_mm", 1e3 * s->shape.tip[1]);
+  json_set_finite(o, "tip_z_mm", 1e3 * s->shape.tip[2]);
   set_spatial(o, &s->spatial);
-  set_real(o, "cavity_volume_mm3", 1e9 * s->cavity_volume);
-  set_real(o, "min_gap_mm", 1e3 * s->min_gap);
-  set_real(o, "max_stretch", s->max_stretch);
+  json_set_finite(o, "cavity_volume_mm3", 1e9 * s->cavity_volume);
+  json_set_finite(o, "min_gap_mm", 1e3 * s->min_gap);
+  json_set_finite(o, "max_stretch", s->max_stretch);
   set_stress(o, &s->stress);
   set_contact(o, s);
   json_object_set_new(o, "newton_iterations", json_integer(s->iterations));
@@ -223,8 +218,8 @@ static void set_suction(json_t *metrics, const struct job_spec *spec) {
     force += suction_force(spec, k);
   }
   if (spec->pneunet.sucker_count > 0) {
-    set_real(metrics, "suction_force_N", force);
-    set_real(metrics, "sucker_count", spec->pneunet.sucker_count);
+    json_set_finite(metrics, "suction_force_N", force);
+    json_set_finite(metrics, "sucker_count", spec->pneunet.sucker_count);
   }
 }
 
@@ -233,35 +228,36 @@ static json_t *metrics_object(const struct result *r) {
   const struct mesh *mesh = r->model->mesh;
   json_t *o = json_object();
   double whole = mesh->half ? 2 : 1;
-  set_real(o, "mass_g", 1e3 * whole * r->model->reference_volume * r->spec->material.density_kg_m3);
+  json_set_finite(o, "mass_g",
+                  1e3 * whole * r->model->reference_volume * r->spec->material.density_kg_m3);
   set_suction(o, r->spec);
   if (r->sample_count == 0) {
     return o;
   }
   const struct sample *s = &r->sample[r->sample_count - 1];
-  set_real(o, "bending_angle_deg", s->shape.bending_angle / degree);
-  set_real(o, "chord_angle_deg", s->shape.chord_angle / degree);
-  set_real(o, "end_face_angle_deg", s->shape.end_face_angle / degree);
+  json_set_finite(o, "bending_angle_deg", s->shape.bending_angle / degree);
+  json_set_finite(o, "chord_angle_deg", s->shape.chord_angle / degree);
+  json_set_finite(o, "end_face_angle_deg", s->shape.end_face_angle / degree);
   struct line_fit fit;
   if (fit_angle(r, m->fit_from, m->fit_to, &fit)) {
-    set_real(o, "sensitivity_deg_per_kPa", fit.slope);
-    set_real(o, "intercept_deg", fit.intercept);
-    set_real(o, "r_squared", fit.r_squared);
+    json_set_finite(o, "sensitivity_deg_per_kPa", fit.slope);
+    json_set_finite(o, "intercept_deg", fit.intercept);
+    json_set_finite(o, "r_squared", fit.r_squared);
   }
   if (fit_angle(r, m->cai_from, m->cai_to, &fit)) {
-    set_real(o, "cai_rad_per_m_kPa", fit.slope * degree / actuator_length(r->spec));
+    json_set_finite(o, "cai_rad_per_m_kPa", fit.slope * degree / actuator_length(r->spec));
   }
-  set_real(o, "tip_deflection_mm", 1e3 * s->tip_deflection);
+  json_set_finite(o, "tip_deflection_mm", 1e3 * s->tip_deflection);
   set_spatial(o, &s->spatial);
   if (r->onset >= 0) {
-    set_real(o, "contact_onset_kPa", 1e-3 * r->onset);
+    json_set_finite(o, "contact_onset_kPa", 1e-3 * r->onset);
   }
-  set_real(o, "cavity_volume_mm3", 1e9 * s->cavity_volume);
-  set_real(o, "max_stretch", s->max_stretch);
+  json_set_finite(o, "cavity_volume_mm3", 1e9 * s->cavity_volume);
+  json_set_finite(o, "max_stretch", s->max_stretch);
   set_stress(o, &s->stress);
   set_contact(o, s);
-  set_real(o, "min_gap_mm", 1e3 * s->min_gap);
-  set_real(o, "max_penetration_mm", 1e3 * r->penetration);
+  json_set_finite(o, "min_gap_mm", 1e3 * s->min_gap);
+  json_set_finite(o, "max_penetration_mm", 1e3 * r->penetration);
   result_set_errors(r, o);
   return o;
 }
@@ -279,8 +275,6 @@ static json_t *fit_object(const struct result *r) {
 
 static json_t *statistics_object(const struct result *r, double wall_s, double cpu_s) {
   const struct fe_statistics *s = &r->model->statistics;
-  struct rusage usage;
-  getrusage(RUSAGE_SELF, &usage);
   struct ldlt_statistics l = r->model->factor;
   return json_pack(
       "{s:i, s:i, s:i, s:i, s:i, s:i, s:b, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}",
@@ -289,7 +283,7 @@ static json_t *statistics_object(const struct result *r, double wall_s, double c
       s->newton_iterations, "solves", s->solves, "warm_start", r->warm, "gflop_per_factorization",
       1e-9 * l.flops, "assembly_s", s->assembly_s, "residual_s", s->residual_s, "factor_s",
       s->factor_s, "solve_s", s->solve_s, "contact_s", s->contact_s, "estimate_s", r->estimate_s,
-      "wall_s", wall_s, "cpu_s", cpu_s, "peak_memory_MB", 1e-3 * 1.024 * (double)usage.ru_maxrss);
+      "wall_s", wall_s, "cpu_s", cpu_s, "peak_memory_MB", clock_peak_memory_MB());
 }
 
 void result_note_start(struct result *r, bool warm) {
@@ -312,7 +306,7 @@ json_t *result_document(struct result *r, enum status status, const struct error
   bool good = status == STATUS_OK;
   json_t *metrics = metrics_object(r);
   if (status == STATUS_LIMIT_POINT) {
-    set_real(metrics, "limit_point_kPa", arc_top(r));
+    json_set_finite(metrics, "limit_point_kPa", arc_top(r));
   }
   json_t *document =
       json_pack("{s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:O, s:o, s:o, s:O, s:o, s:{s:s, s:s}}",

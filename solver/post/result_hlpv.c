@@ -1,20 +1,14 @@
 #include "solver/post/result_hlpv.h"
 
 #include <math.h>
-#include <sys/resource.h>
 #include "solver/base/clock.h"
 #include "solver/hlpv/simulate.h"
-
-static void set_real(json_t *object, const char *key, double value) {
-  if (isfinite(value)) {
-    json_object_set_new(object, key, json_real(value));
-  }
-}
+#include "solver/job/json.h"
 
 static void set_extension_ratio(json_t *object, const char *key, const struct hlpv_spec *spec,
                                 double h) {
   if (spec->rest_length > 0.0) {
-    set_real(object, key, h / spec->rest_length);
+    json_set_finite(object, key, h / spec->rest_length);
   }
 }
 
@@ -22,9 +16,9 @@ static void set_extension_ratio(json_t *object, const char *key, const struct hl
 
 static json_t *state_object(const double x[HLPV_STATES]) {
   json_t *o = json_object();
-  set_real(o, "h_m", x[HLPV_H]);
-  set_real(o, "velocity_m_s", x[HLPV_VELOCITY]);
-  set_real(o, "pressure_Pa", x[HLPV_PRESSURE]);
+  json_set_finite(o, "h_m", x[HLPV_H]);
+  json_set_finite(o, "velocity_m_s", x[HLPV_VELOCITY]);
+  json_set_finite(o, "pressure_Pa", x[HLPV_PRESSURE]);
   return o;
 }
 
@@ -45,7 +39,7 @@ static json_t *events_array(const struct hlpv_spec *spec, const struct hlpv_traj
 
 static json_t *final_object(const struct hlpv_spec *spec, const struct hlpv_trajectory *t) {
   json_t *o = state_object(t->x);
-  set_real(o, "time_s", t->time);
+  json_set_finite(o, "time_s", t->time);
   json_object_set_new(o, "mode", json_string(spec->mode[t->mode].name));
   set_extension_ratio(o, "extension_ratio", spec, t->x[HLPV_H]);
   return o;
@@ -56,11 +50,11 @@ static json_t *samples_array(const struct hlpv_spec *spec, const struct hlpv_tra
   for (size_t i = 0; i < t->sample_count; i++) {
     const struct hlpv_sample *sample = &t->sample[i];
     json_t *o = json_object();
-    set_real(o, "time_s", sample->time);
-    set_real(o, "set_point_kPa", 1e-3 * sample->set_point);
-    set_real(o, "h_mm", 1e3 * sample->x[HLPV_H]);
-    set_real(o, "velocity_m_s", sample->x[HLPV_VELOCITY]);
-    set_real(o, "pressure_kPa", 1e-3 * sample->x[HLPV_PRESSURE]);
+    json_set_finite(o, "time_s", sample->time);
+    json_set_finite(o, "set_point_kPa", 1e-3 * sample->set_point);
+    json_set_finite(o, "h_mm", 1e3 * sample->x[HLPV_H]);
+    json_set_finite(o, "velocity_m_s", sample->x[HLPV_VELOCITY]);
+    json_set_finite(o, "pressure_kPa", 1e-3 * sample->x[HLPV_PRESSURE]);
     set_extension_ratio(o, "extension_ratio", spec, sample->x[HLPV_H]);
     json_object_set_new(o, "mode", json_string(spec->mode[sample->mode].name));
     json_array_append_new(samples, o);
@@ -73,20 +67,20 @@ static json_t *holds_array(const struct hlpv_spec *spec, const struct hlpv_traje
   for (size_t i = 0; i < t->hold_count; i++) {
     const struct hlpv_hold *hold = &t->hold[i];
     json_t *o = json_object();
-    set_real(o, "start_s", hold->start);
-    set_real(o, "end_s", hold->end);
-    set_real(o, "set_point_kPa", 1e-3 * hold->set_point);
+    json_set_finite(o, "start_s", hold->start);
+    json_set_finite(o, "end_s", hold->end);
+    json_set_finite(o, "set_point_kPa", 1e-3 * hold->set_point);
     json_object_set_new(o, "mode", json_string(spec->mode[hold->mode].name));
     json_object_set_new(o, "switches", json_integer(hold->switches));
-    set_real(o, "end_h_mm", 1e3 * hold->last[HLPV_H]);
-    set_real(o, "end_pressure_kPa", 1e-3 * hold->last[HLPV_PRESSURE]);
+    json_set_finite(o, "end_h_mm", 1e3 * hold->last[HLPV_H]);
+    json_set_finite(o, "end_pressure_kPa", 1e-3 * hold->last[HLPV_PRESSURE]);
     set_extension_ratio(o, "end_extension_ratio", spec, hold->last[HLPV_H]);
-    set_real(o, "steady_h_mm", 1e3 * hold->steady_h);
-    set_real(o, "steady_pressure_kPa", 1e-3 * hold->steady_pressure);
+    json_set_finite(o, "steady_h_mm", 1e3 * hold->steady_h);
+    json_set_finite(o, "steady_pressure_kPa", 1e-3 * hold->steady_pressure);
     set_extension_ratio(o, "steady_extension_ratio", spec, hold->steady_h);
-    set_real(o, "steady_force_N", spec->gamma * hold->steady_pressure);
-    set_real(o, "settling_time_s", hold->settling);
-    set_real(o, "peak_speed_m_s", hold->peak_speed);
+    json_set_finite(o, "steady_force_N", spec->gamma * hold->steady_pressure);
+    json_set_finite(o, "settling_time_s", hold->settling);
+    json_set_finite(o, "peak_speed_m_s", hold->peak_speed);
     json_array_append_new(holds, o);
   }
   return holds;
@@ -100,17 +94,17 @@ static json_t *metrics_object(const struct hlpv_spec *spec, const struct hlpv_tr
   }
   set_extension_ratio(o, "extension_ratio", spec, t->highest[HLPV_H]);
   set_extension_ratio(o, "final_extension_ratio", spec, t->x[HLPV_H]);
-  set_real(o, "max_h_mm", 1e3 * t->highest[HLPV_H]);
-  set_real(o, "min_h_mm", 1e3 * t->lowest[HLPV_H]);
-  set_real(o, "max_pressure_kPa", 1e-3 * t->highest[HLPV_PRESSURE]);
-  set_real(o, "peak_speed_m_s", t->peak_speed);
-  set_real(o, "output_force_N", spec->gamma * t->highest[HLPV_PRESSURE]);
-  set_real(o, "settling_time_s", settling);
+  json_set_finite(o, "max_h_mm", 1e3 * t->highest[HLPV_H]);
+  json_set_finite(o, "min_h_mm", 1e3 * t->lowest[HLPV_H]);
+  json_set_finite(o, "max_pressure_kPa", 1e-3 * t->highest[HLPV_PRESSURE]);
+  json_set_finite(o, "peak_speed_m_s", t->peak_speed);
+  json_set_finite(o, "output_force_N", spec->gamma * t->highest[HLPV_PRESSURE]);
+  json_set_finite(o, "settling_time_s", settling);
   json_object_set_new(o, "event_count", json_integer((json_int_t)t->event_count));
   if (t->event_count > 0) {
-    set_real(o, "first_event_s", t->event[0].time);
-    set_real(o, "last_event_s", t->event[t->event_count - 1].time);
-    set_real(o, "trigger_pressure_kPa", 1e-3 * t->event[0].before[HLPV_PRESSURE]);
+    json_set_finite(o, "first_event_s", t->event[0].time);
+    json_set_finite(o, "last_event_s", t->event[t->event_count - 1].time);
+    json_set_finite(o, "trigger_pressure_kPa", 1e-3 * t->event[0].before[HLPV_PRESSURE]);
   }
   return o;
 }
@@ -136,7 +130,7 @@ static json_t *transition_object(const struct hlpv_spec *spec, const struct hlpv
   json_t *reset = json_object();
   for (int k = 0; k < HLPV_STATES; k++) {
     if (t->reset[k].factor == 0.0) {
-      set_real(reset, levels[k], t->reset[k].value);
+      json_set_finite(reset, levels[k], t->reset[k].value);
     }
   }
   return json_pack("{s:s, s:s, s:{s:f, s:s}, s:o}", "from", spec->mode[t->from].name, "to",
@@ -163,12 +157,10 @@ static json_t *model_object(const struct hlpv_spec *spec) {
 }
 
 static json_t *statistics_object(const struct hlpv_trajectory *t, double wall_s, double cpu_s) {
-  struct rusage usage;
-  getrusage(RUSAGE_SELF, &usage);
   return json_pack("{s:I, s:I, s:I, s:f, s:f, s:f}", "steps", (json_int_t)t->counts.steps,
                    "evaluations", (json_int_t)t->counts.evaluations, "restarts",
                    (json_int_t)t->counts.restarts, "wall_s", wall_s, "cpu_s", cpu_s,
-                   "peak_memory_MB", 1e-3 * 1.024 * (double)usage.ru_maxrss);
+                   "peak_memory_MB", clock_peak_memory_MB());
 }
 
 /* ---- the job ------------------------------------------------------------------------------ */

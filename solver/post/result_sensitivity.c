@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "solver/job/json.h"
 #include "solver/post/fit.h"
 #include "solver/post/shape.h"
 #include "solver/post/variation.h"
@@ -279,12 +280,6 @@ void result_sensitivity_destroy(struct result_sensitivity *r) {
 
 /* ---- the block ----------------------------------------------------------------------------- */
 
-static void set_real(json_t *object, const char *key, double value) {
-  if (isfinite(value)) {
-    json_object_set_new(object, key, json_real(value));
-  }
-}
-
 /* Row of a state: that of a parameter, or of the pressure for a negative one. */
 static const double *row_of(const struct derivatives *d, int parameter) {
   return parameter < 0 ? d->to_load : d->row[parameter];
@@ -305,7 +300,7 @@ static void set_row(const struct result_sensitivity *r, json_t *object, int para
   bool lopsided = parameter >= 0 && variation_one_sided(r->spec, r->variation[parameter].parameter);
   for (int k = 0; k < QUANTITIES; k++) {
     if ((k != TIP_Y || !lopsided) && is_sampled(r, k)) {
-      set_real(object, quantity_key[k], row[k]);
+      json_set_finite(object, quantity_key[k], row[k]);
     }
   }
 }
@@ -347,10 +342,10 @@ static json_t *metric_row(const struct result_sensitivity *r, int parameter) {
     json_object_del(metrics, quantity_key[TIP_X]);
     json_object_del(metrics, quantity_key[TIP_Y]);
     json_object_del(metrics, quantity_key[TIP_Z]);
-    set_real(metrics, "mass_g", r->mass[parameter]);
+    json_set_finite(metrics, "mass_g", r->mass[parameter]);
   }
   if (is_sampled(r, BENDING_ANGLE)) {
-    set_real(metrics, "sensitivity_deg_per_kPa", slope_derivative(r, parameter));
+    json_set_finite(metrics, "sensitivity_deg_per_kPa", slope_derivative(r, parameter));
   }
   return metrics;
 }

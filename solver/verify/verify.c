@@ -2,8 +2,8 @@
 
 #include <math.h>
 #include <string.h>
-#include <sys/resource.h>
 #include "solver/base/clock.h"
+#include "solver/job/json.h"
 
 const struct verify_case *verify_find(const char *name) {
   int count;
@@ -16,23 +16,17 @@ const struct verify_case *verify_find(const char *name) {
   return NULL;
 }
 
-static void set_real(json_t *object, const char *key, double value) {
-  if (isfinite(value)) {
-    json_object_set_new(object, key, json_real(value));
-  }
-}
-
 static json_t *metrics_object(const struct verify_case *c, const struct verify_report *r,
                               bool good) {
   json_t *o = json_object();
   if (good) {
-    set_real(o, "computed", r->computed);
-    set_real(o, "reference", r->reference);
-    set_real(o, "error_percent", 100 * r->error);
+    json_set_finite(o, "computed", r->computed);
+    json_set_finite(o, "reference", r->reference);
+    json_set_finite(o, "error_percent", 100 * r->error);
   }
-  set_real(o, "bound_percent", 100 * c->bound);
+  json_set_finite(o, "bound_percent", 100 * c->bound);
   for (int i = 0; i < r->metric_count; i++) {
-    set_real(o, r->metric[i].name, r->metric[i].value);
+    json_set_finite(o, r->metric[i].name, r->metric[i].value);
   }
   return o;
 }
@@ -43,17 +37,17 @@ static json_t *samples_array(const struct verify_case *c, const struct verify_re
   for (int i = 0; c->point && i < r->point_count; i++) {
     const struct verify_point *p = &r->point[i];
     json_t *o = json_object();
-    set_real(o, c->point, p->x);
-    set_real(o, "computed", p->computed);
-    set_real(o, "reference", p->reference);
-    set_real(o, "error_percent", 100 * fabs(p->computed / p->reference - 1));
+    json_set_finite(o, c->point, p->x);
+    json_set_finite(o, "computed", p->computed);
+    json_set_finite(o, "reference", p->reference);
+    json_set_finite(o, "error_percent", 100 * fabs(p->computed / p->reference - 1));
     json_array_append_new(samples, o);
   }
   for (int i = 0; !c->point && i < r->row_count; i++) {
     json_t *o = json_object();
-    set_real(o, "size", r->row[i].size);
-    set_real(o, "computed", r->row[i].computed);
-    set_real(o, "error_percent", 100 * r->row[i].error);
+    json_set_finite(o, "size", r->row[i].size);
+    json_set_finite(o, "computed", r->row[i].computed);
+    json_set_finite(o, "error_percent", 100 * r->row[i].error);
     json_array_append_new(samples, o);
   }
   return samples;
@@ -64,13 +58,13 @@ static json_t *meshes_array(const struct verify_report *r) {
   for (int i = 0; i < r->row_count; i++) {
     const struct verify_row *row = &r->row[i];
     json_t *o = json_pack("{s:s}", "mesh", row->label);
-    set_real(o, "size", row->size);
+    json_set_finite(o, "size", row->size);
     if (row->unknowns > 0) {
       json_object_set_new(o, "unknowns", json_integer(row->unknowns));
     }
-    set_real(o, "computed", row->computed);
-    set_real(o, "error_percent", 100 * row->error);
-    set_real(o, "other_error_percent", 100 * row->other);
+    json_set_finite(o, "computed", row->computed);
+    json_set_finite(o, "error_percent", 100 * row->error);
+    json_set_finite(o, "other_error_percent", 100 * row->other);
     json_array_append_new(meshes, o);
   }
   return meshes;
@@ -97,12 +91,10 @@ static json_t *case_object(const struct verify_case *c) {
 }
 
 static json_t *statistics_object(const struct verify_report *r, double wall_s, double cpu_s) {
-  struct rusage usage;
-  getrusage(RUSAGE_SELF, &usage);
   return json_pack("{s:i, s:i, s:i, s:i, s:f, s:f, s:f}", "unknowns", r->unknowns, "elements",
                    r->elements, "factorizations", r->factorizations, "newton_iterations",
                    r->newton_iterations, "wall_s", wall_s, "cpu_s", cpu_s, "peak_memory_MB",
-                   1e-3 * 1.024 * (double)usage.ru_maxrss);
+                   clock_peak_memory_MB());
 }
 
 enum status verify_job(const struct job_spec *spec, const struct verify_options *options,

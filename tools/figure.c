@@ -1,0 +1,27 @@
+#include "tools/figure.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+bool figure_save(unsigned char *png, size_t size, const char *path) {
+  FILE *file = fopen(path, "wb");
+  bool good = file && fwrite(png, 1, size, file) == size;
+  good = file && fclose(file) == 0 && good;
+  if (!good) {
+    perror(path);
+  }
+  free(png);
+  return good;
+}
+
+bool figure_write(const char *program, const char *plot, const struct plot_input *input, int width,
+                  int height, const char *path) {
+  unsigned char *png = NULL;
+  size_t size = 0;
+  struct error error = {.status = STATUS_OK};
+  if (plot_render(plot, input, 1, width, height, &png, &size, &error) != STATUS_OK) {
+    fprintf(stderr, "%s: %s: %s\n", program, path, error.message);
+    return false;
+  }
+  return figure_save(png, size, path);
+}

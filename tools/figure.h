@@ -1,0 +1,18 @@
+/* Pictures of the documents that the tools write. */
+#ifndef PNEULAB_TOOLS_FIGURE_H
+#define PNEULAB_TOOLS_FIGURE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include "server/plot/plot.h"
+
+/* Writes a picture of `size` bytes to `path` and frees it. False with the reason on standard
+ * error. */
+bool figure_save(unsigned char *png, size_t size, const char *path);
+
+/* Draws `plot` from one job, width x height pixels, into the file `path`. False with the reason on
+ * standard error, after the name of the program. */
+bool figure_write(const char *program, const char *plot, const struct plot_input *input, int width,
+                  int height, const char *path);
+
+#endif
