@@ -1,6 +1,6 @@
 #!/bin/sh
-# Includes only point downwards: base < job < mesh < fe < post, verify < run, study within the solver; the
-# server uses of the solver only base and job; the solver never sees the server.
+# Includes only point downwards: base < job < mesh < fe, hlpv, axi < post, verify, material, identify, snap, bistable < run,
+# study within the solver; the server uses of the solver only base and job; the solver never sees the server.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 rank() {
@@ -8,8 +8,8 @@ rank() {
   solver/base/*) echo 1 ;;
   solver/job/*) echo 2 ;;
   solver/mesh/*) echo 3 ;;
-  solver/fe/* | solver/hlpv/*) echo 4 ;;
-  solver/post/* | solver/verify/* | solver/material/*) echo 5 ;;
+  solver/fe/* | solver/hlpv/* | solver/axi/*) echo 4 ;;
+  solver/post/* | solver/verify/* | solver/material/* | solver/identify/* | solver/snap/* | solver/bistable/*) echo 5 ;;
   solver/study/*) echo 6 ;;
   solver/run.[ch] | solver/main.c | solver/solve.[ch] | solver/estimate.[ch]) echo 6 ;;
   server/*) echo 7 ;;
