@@ -3,13 +3,17 @@
 #include <math.h>
 #include <stdlib.h>
 
+void hlpv_input_release(struct hlpv_input *input) {
+  free(input->time);
+  free(input->value);
+  *input = (struct hlpv_input){0};
+}
+
 void hlpv_spec_destroy(struct hlpv_spec *spec) {
-  if (!spec) {
-    return;
+  if (spec) {
+    hlpv_input_release(&spec->input);
+    free(spec);
   }
-  free(spec->input.time);
-  free(spec->input.value);
-  free(spec);
 }
 
 double hlpv_polynomial_value(const struct hlpv_polynomial *polynomial, double set_point) {

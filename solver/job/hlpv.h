@@ -80,6 +80,7 @@ struct hlpv_spec {
   double tolerance;   /* of the integration, relative to the size of each state */
 };
 
+void hlpv_input_release(struct hlpv_input *input);
 void hlpv_spec_destroy(struct hlpv_spec *spec);
 
 double hlpv_polynomial_value(const struct hlpv_polynomial *polynomial, double set_point);

@@ -92,6 +92,13 @@ enum status pneunet_check_suckers(const struct pneunet_spec *spec, struct error 
  * STATUS_NO_MEMORY. */
 enum status reader_hlpv(const struct reader *reader, const json_t *document, struct job_spec *job);
 
+struct hlpv_input;
+
+/* Fills *input from the set-point profile in `value`, at `pointer` in the job. The caller releases
+ * it, also after a failure. STATUS_OK, INVALID, TOO_LARGE or NO_MEMORY. */
+enum status reader_set_point(const struct reader *reader, const json_t *value, const char *pointer,
+                             struct hlpv_input *input);
+
 struct hlpv_mode;
 
 /* Fills the stiffness of a mode, and with a slope its rest, from the states of rest in `value`, at
