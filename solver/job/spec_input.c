@@ -25,8 +25,8 @@ static enum status reserve_points(const struct reader *reader, size_t count,
 static enum status check_times(const struct reader *reader, const struct hlpv_input *input,
                                const int *line, const char *pointer) {
   for (size_t i = 0; i < input->count; i++) {
-    char where[POINTER_MAX + 30], place[40] = "";
-    snprintf(where, sizeof where, line ? "%s" : "%s/%zu/0", pointer, i);
+    char where[POINTER_MAX], place[40] = "";
+    snprintf(where, sizeof where, line ? "%.180s" : "%.180s/%zu/0", pointer, i);
     if (line) {
       snprintf(place, sizeof place, "line %d: ", line[i]);
     }
@@ -55,13 +55,13 @@ static enum status read_points(const struct reader *reader, const json_t *points
   json_array_foreach(points, index, point) {
     const json_t *time = json_array_get(point, 0), *value = json_array_get(point, 1);
     struct error *error = reader->error;
-    char where[POINTER_MAX + 30];
+    char where[POINTER_MAX];
     status = units_read(reader->units, json_string_value(time), "s", &input->time[index], error);
-    snprintf(where, sizeof where, "%s/%zu/0", pointer, index);
+    snprintf(where, sizeof where, "%.180s/%zu/0", pointer, index);
     if (status == STATUS_OK) {
       status =
           units_read(reader->units, json_string_value(value), "kPa", &input->value[index], error);
-      snprintf(where, sizeof where, "%s/%zu/1", pointer, index);
+      snprintf(where, sizeof where, "%.180s/%zu/1", pointer, index);
     }
     if (status == STATUS_OK && fabs(input->value[index]) > 1e9) {
       status = error_set(error, STATUS_INVALID, where,
@@ -126,7 +126,7 @@ enum status reader_set_point(const struct reader *reader, const json_t *value, c
   const json_t *hold = json_object_get(value, "hold"), *linear = json_object_get(value, "linear");
   const json_t *sine = json_object_get(value, "sine"), *data = json_object_get(value, "data");
   int given = !!hold + !!linear + !!sine + !!data;
-  char where[POINTER_MAX + 30];
+  char where[POINTER_MAX];
   if (given != 1) {
     return error_set(reader->error, STATUS_INVALID, pointer,
                      "one of \"hold\", \"linear\", \"sine\" or \"data\" is wanted, not %d; for "
