@@ -154,6 +154,9 @@ static enum status run_other(const struct job_spec *spec, const struct run_optio
     struct result_hlpv_options hlpv = {options->events, options->cancelled};
     return result_hlpv(spec, &hlpv, document, ending, error);
   }
+  if (spec->kind == JOB_SNAP) {
+    return error_set(error, STATUS_INVALID, "/kind", "this build checks snap jobs only");
+  }
   struct verify_options verify = {options->events, options->cancelled};
   return verify_job(spec, &verify, document, ending, error);
 }

@@ -255,6 +255,7 @@ static enum status read_kind(const struct job_reader *job_reader, const struct r
          : strcmp(kind, "fit-material") == 0   ? reader_fit(reader, document, spec)
          : strcmp(kind, "material-curve") == 0 ? reader_material_curve(reader, document, spec)
          : strcmp(kind, "hlpv") == 0           ? reader_hlpv(reader, document, spec)
+         : strcmp(kind, "snap") == 0           ? reader_snap(reader, document, spec)
                                                : read_response(reader, document, spec);
 }
 
@@ -315,6 +316,7 @@ enum status job_reader_read(const struct job_reader *reader, const char *text, s
 void job_spec_release(struct job_spec *spec) {
   json_decref(spec->document);
   hlpv_spec_destroy(spec->hlpv);
+  free(spec->snap);
   *spec = (struct job_spec){.kind = JOB_RESPONSE};
 }
 

@@ -13,7 +13,8 @@ enum job_kind {
   JOB_STUDY,
   JOB_FIT_MATERIAL,
   JOB_MATERIAL_CURVE,
-  JOB_HLPV
+  JOB_HLPV,
+  JOB_SNAP
 };
 
 /* ---- material --------------------------------------------------------------------------- */
@@ -230,9 +231,13 @@ struct material_curve_spec {
 /* A model with guards and its input: solver/job/hlpv.h. */
 struct hlpv_spec;
 
+/* A bistable bellows: solver/job/snap.h. */
+struct snap_spec;
+
 /* Only the members of its kind are filled: of a verify job name, verify, timeout and hash; of a
  * study name, timeout, hash and document; of a fit name, fit, timeout, hash and document; of a
- * material curve name, material, curve and hash; of an hlpv job name, hlpv, timeout and hash. */
+ * material curve name, material, curve and hash; of an hlpv job name, hlpv, timeout and hash; of a
+ * snap job name, snap, timeout and hash. */
 struct job_spec {
   enum job_kind kind;
   char name[200];
@@ -250,6 +255,7 @@ struct job_spec {
   struct fit_spec fit;
   struct material_curve_spec curve;
   struct hlpv_spec *hlpv; /* of an hlpv job, else NULL; owned and borrowed as document */
+  struct snap_spec *snap; /* of a snap job, else NULL; likewise */
   bool contact;
   struct plane_spec plane[PLANES_MAX];
   int plane_count;
