@@ -46,7 +46,7 @@ function showPlot(query, ids) {
   const image = find('compare-plot');
   if (image.getAttribute('src') !== plot) {
     find('compare-figure').hidden = false;
-    image.alt = `Bending angle against pressure of the jobs ${ids.join(', ')}`;
+    image.alt = `Curves against pressure of the jobs ${ids.join(', ')}`;
     image.src = plot;
     find('compare-link').href = plot;
   }

@@ -18,7 +18,7 @@ const CAPTIONS = {
   surface: 'Deformed body, coloured by the largest stretch',
   convergence: 'Error against element size',
   curve: 'Computed values on the curve of the reference',
-  curves: 'Bending angle of every member against pressure',
+  curves: 'Every member against pressure',
   metric: 'A metric of the members',
   ranking: 'The best designs',
   workspace: 'Positions of the tip in three views',
@@ -30,6 +30,10 @@ const CAPTIONS = {
   time: 'Elongation, speed and pressure over time, with the modes',
   phase: 'Speed against elongation',
   steady: 'Elongation at the end of each held set-point',
+  'snap-path': 'Equilibrium under pressure and under axial force',
+  shapes: 'Meridian in its states',
+  held: 'Force at the natural length against pressure',
+  stability: 'Loss of axisymmetry by harmonic',
   suction: 'Suction and bending against the number of suckers',
 };
 

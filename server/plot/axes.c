@@ -132,7 +132,7 @@ void axes_widen(const struct canvas *canvas, const struct axes *axes, struct fra
     double spare = 0.6 + 0.4 * fmax(4 - names, 0); /* one column alone need not fill the sheet */
     frame->x_min = -spare;
     frame->x_max = names - 1 + spare;
-  } else if (axes->whole_x && frame->x_max - frame->x_min < 12) {
+  } else if (axes->whole_x && frame->x_max - frame->x_min < 40) {
     frame->x_min = floor(frame->x_min) - 0.5;
     frame->x_max = ceil(frame->x_max) + 0.5;
   } else {

@@ -364,31 +364,49 @@ void chart_draw(const struct chart *chart, struct canvas *canvas) {
   chart_heading(canvas, panel.frame.area.x, chart->title, chart->subtitle, chart->notice);
 }
 
-void chart_draw_stack(const struct chart *charts, const double *shares, size_t count,
-                      struct canvas *canvas) {
-  struct panel panels[CHART_STACK];
+/* Draws rows x columns charts, given row by row, that share their x axis. */
+static void draw_table(const struct chart *charts, const double *shares, size_t rows,
+                       size_t columns, struct canvas *canvas) {
+  struct panel panels[CHART_TABLE];
   double top = chart_heading_height(canvas, charts->subtitle, charts->notice);
-  double y = top, from = INFINITY, to = -INFINITY, left = 0;
-  /* the last has the numbers and the label besides */
+  double y = top, from = INFINITY, to = -INFINITY, left[CHART_TABLE] = {0};
+  double across = (double)canvas->width / (double)columns;
+  /* the last row has the numbers and the label besides */
   double extra = 46 * canvas->unit, height = canvas->height - top - extra;
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < rows * columns; i++) {
+    size_t row = i / columns, column = i % columns;
+    double own = shares[row] * height + (row + 1 < rows ? 0 : extra);
     panels[i] = panel_make(&charts[i]);
-    panels[i].axes.no_x_text = i + 1 < count;
-    double own = shares[i] * height + (i + 1 < count ? 0 : extra);
-    panels[i].sheet = (struct box){0, y, canvas->width, own};
-    y += own;
+    panels[i].axes.no_x_text = row + 1 < rows;
+    panels[i].sheet = (struct box){(double)column * across, y, across, own};
+    y += column + 1 < columns ? 0 : own;
     from = panels[i].points > 0 ? fmin(from, panels[i].data.x_min) : from;
     to = panels[i].points > 0 ? fmax(to, panels[i].data.x_max) : to;
   }
-  for (size_t i = 0; i < count; i++) {
-    panels[i].data.x_min = from <= to ? from : 0;
-    panels[i].data.x_max = from <= to ? to : 1;
-    lay_out(&panels[i], canvas, panels[i].sheet.y);
-    left = fmax(left, panels[i].frame.area.x);
+  for (size_t i = 0; i < rows * columns; i++) {
+    struct panel *panel = &panels[i];
+    panel->data.x_min = from <= to ? from : 0;
+    panel->data.x_max = from <= to ? to : 1;
+    lay_out(panel, canvas, panel->sheet.y);
+    left[i % columns] = fmax(left[i % columns], panel->frame.area.x - panel->sheet.x);
   }
-  for (size_t i = 0; i < count; i++) {
-    panels[i].left = left;
+  for (size_t i = 0; i < rows * columns; i++) {
+    panels[i].left = left[i % columns];
     draw_panel(&panels[i], canvas);
   }
-  chart_heading(canvas, left, charts->title, charts->subtitle, charts->notice);
+  chart_heading(canvas, left[0], charts->title, charts->subtitle, charts->notice);
+}
+
+void chart_draw_stack(const struct chart *charts, const double *shares, size_t count,
+                      struct canvas *canvas) {
+  draw_table(charts, shares, count, 1, canvas);
+}
+
+void chart_draw_grid(const struct chart *charts, size_t rows, size_t columns,
+                     struct canvas *canvas) {
+  double shares[CHART_TABLE];
+  for (size_t i = 0; i < rows; i++) {
+    shares[i] = 1.0 / (double)rows;
+  }
+  draw_table(charts, shares, rows, columns, canvas);
 }

@@ -101,14 +101,19 @@ struct point frame_pixel(const struct frame *frame, struct point p);
 /* Draws the chart over the whole canvas. */
 void chart_draw(const struct chart *chart, struct canvas *canvas);
 
-/* Most charts in one stack. */
-enum { CHART_STACK = 4 };
+/* Most charts in one stack or grid. */
+enum { CHART_TABLE = 8 };
 
-/* Draws up to CHART_STACK charts below each other over the whole canvas, with the heading of the
+/* Draws up to CHART_TABLE charts below each other over the whole canvas, with the heading of the
  * first. They share the x axis, whose numbers and label are those of the last. shares: parts of the
  * height, sum 1. Bars of colour are left out. */
 void chart_draw_stack(const struct chart *charts, const double *shares, size_t count,
                       struct canvas *canvas);
+
+/* The same for rows x columns charts of one size, given row by row, at most CHART_TABLE; the
+ * numbers and the label of x are below the last row. */
+void chart_draw_grid(const struct chart *charts, size_t rows, size_t columns,
+                     struct canvas *canvas);
 
 /* Draws title, subtitle and notice with their left edge at `left`, in pixels. */
 void chart_heading(struct canvas *canvas, double left, const char *title, const char *subtitle,

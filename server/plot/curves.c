@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "server/plot/draw.h"
+#include "server/plot/extension.h"
 #include "server/plot/members.h"
 #include "server/plot/quantity.h"
 
@@ -178,12 +179,39 @@ done:
   return status;
 }
 
+/* The members that are bistable actuators, at most DRAW_OVERLAY_LIMIT of them. */
+static size_t find_bistable(const struct members *members,
+                            struct extension_source sources[DRAW_OVERLAY_LIMIT]) {
+  size_t count = 0;
+  for (size_t i = 0; i < members->count && count < DRAW_OVERLAY_LIMIT; i++) {
+    const struct member *member = &members->list[i];
+    if (extension_is_of(member->object)) {
+      sources[count++] = (struct extension_source){member->object, member->name};
+    }
+  }
+  return count;
+}
+
 enum status draw_curves(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                         struct error *error) {
   static const struct subject subject = {"bending_angle_deg", "Bending angle against pressure",
                                          true};
+  struct extension_source sources[DRAW_OVERLAY_LIMIT];
+  struct members members;
+  char subtitle[DATA_HEADING], notice[DATA_HEADING];
+  enum status status = members_read(inputs[0].result, &members, error);
+  size_t bistable = status == STATUS_OK ? find_bistable(&members, sources) : 0;
   (void)count;
-  return draw_family(canvas, inputs, &subject, error);
+  if (bistable > 0) {
+    members_subtitle(&inputs[0], members.count, subtitle);
+    members_notice(&members, notice);
+    status = extension_draw(canvas, sources, bistable,
+                            &(struct extension_heading){subtitle, notice}, error);
+  } else if (status == STATUS_OK) {
+    status = draw_family(canvas, inputs, &subject, error);
+  }
+  members_release(&members);
+  return status;
 }
 
 enum status draw_contraction(struct canvas *canvas, const struct plot_input *inputs, size_t count,

@@ -46,7 +46,21 @@ enum status draw_phase(struct canvas *canvas, const struct plot_input *inputs, s
 enum status draw_steady(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                         struct error *error);
 
-/* Bending angle against pressure of the members of a study, with sensitivities and R². */
+/* Equilibrium paths of a bistable actuator: pressure and axial force against elongation. */
+enum status draw_snap_path(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                           struct error *error);
+/* Its meridian in some states, true to scale. */
+enum status draw_shapes(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                        struct error *error);
+/* The force that holds it at its natural length, against pressure. */
+enum status draw_held(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                      struct error *error);
+/* The pressure at which each circumferential harmonic loses its stability. */
+enum status draw_stability(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                           struct error *error);
+
+/* Bending angle against pressure of the members of a study, with sensitivities and R²; of bistable
+ * actuators extension and force. */
 enum status draw_curves(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                         struct error *error);
 /* Contraction of the reach against pressure of the members of a study. */
@@ -78,7 +92,7 @@ enum status draw_fit(struct canvas *canvas, const struct plot_input *inputs, siz
 enum status draw_stress(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                         struct error *error);
 
-/* Bending angle against pressure of several jobs. */
+/* Bending angle against pressure of several jobs; of bistable actuators extension and force. */
 enum status draw_overlay(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                          struct error *error);
 

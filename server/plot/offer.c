@@ -104,6 +104,23 @@ const char *offer_steady(const struct plot_input *input) {
              : "fewer than two set-points were held";
 }
 
+const char *offer_shapes(const struct plot_input *input) {
+  return json_array_size(json_object_get(input->result, "shapes")) > 0 ? NULL
+                                                                       : "no shapes were recorded";
+}
+
+const char *offer_held(const struct plot_input *input) {
+  return json_array_size(json_object_get(input->result, "held")) > 0
+             ? NULL
+             : "the actuator was not held at its natural length";
+}
+
+const char *offer_stability(const struct plot_input *input) {
+  return json_array_size(json_object_get(input->result, "harmonics")) > 0
+             ? NULL
+             : "no circumferential harmonics were tested";
+}
+
 const char *offer_suction(const struct plot_input *input) {
   const json_t *members = json_object_get(input->result, "members");
   for (size_t i = 0; i < json_array_size(members); i++) {

@@ -17,6 +17,13 @@ const char *offer_metric(const struct plot_input *input);
 /* A hybrid model with two held set-points at least. */
 const char *offer_steady(const struct plot_input *input);
 
+/* A snap with meridians of some states. */
+const char *offer_shapes(const struct plot_input *input);
+/* A snap with forces that hold its natural length. */
+const char *offer_held(const struct plot_input *input);
+/* A snap whose circumferential harmonics were tested. */
+const char *offer_stability(const struct plot_input *input);
+
 /* A study with a ranking. */
 const char *offer_ranking(const struct plot_input *input);
 /* A study in which some tip leaves the plane y = 0. */

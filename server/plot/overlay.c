@@ -5,6 +5,7 @@
 
 #include "server/plot/data.h"
 #include "server/plot/draw.h"
+#include "server/plot/extension.h"
 
 struct texts {
   char name[DATA_HEADING];
@@ -27,6 +28,28 @@ static void describe(const json_t *result, char *text, size_t size) {
   }
 }
 
+/* Several bistable actuators, when that is what all of them are. */
+static bool are_bistable(const struct plot_input *inputs, size_t count) {
+  bool all = true;
+  for (size_t i = 0; i < count; i++) {
+    all = all && extension_is_of(inputs[i].result);
+  }
+  return all;
+}
+
+static enum status draw_bistable(struct canvas *canvas, const struct plot_input *inputs,
+                                 size_t count, struct texts *texts, struct error *error) {
+  struct extension_source sources[DRAW_OVERLAY_LIMIT];
+  char subtitle[64];
+  for (size_t i = 0; i < count; i++) {
+    data_name(&inputs[i], texts[i].name);
+    sources[i] = (struct extension_source){inputs[i].result, texts[i].name};
+  }
+  snprintf(subtitle, sizeof subtitle, "%zu job%s", count, count == 1 ? "" : "s");
+  return extension_draw(canvas, sources, count,
+                        &(struct extension_heading){.subtitle = subtitle, .notice = ""}, error);
+}
+
 enum status draw_overlay(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                          struct error *error) {
   enum status status = STATUS_OK;
@@ -37,6 +60,10 @@ enum status draw_overlay(struct canvas *canvas, const struct plot_input *inputs,
     return error_set(error, STATUS_NO_MEMORY, NULL, "memory ran out for %zu curves", count);
   }
   bool stopped = false;
+  if (are_bistable(inputs, count)) {
+    status = draw_bistable(canvas, inputs, count, texts, error);
+    goto done;
+  }
   for (size_t i = 0; i < count; i++) {
     size_t point_count;
     status = data_samples(inputs[i].result, "pressure_kPa", "bending_angle_deg", &points[i],

@@ -41,6 +41,10 @@ static const struct entry entries[] = {
     {"time", "hlpv", draw_time, NULL},
     {"phase", "hlpv", draw_phase, NULL},
     {"steady", "hlpv", draw_steady, offer_steady},
+    {"snap-path", "snap", draw_snap_path, NULL},
+    {"shapes", "snap", draw_shapes, offer_shapes},
+    {"held", "snap", draw_held, offer_held},
+    {"stability", "snap", draw_stability, offer_stability},
     {"overlay", NULL, draw_overlay, NULL},
 };
 
@@ -53,6 +57,7 @@ const char *const *plot_names(const char *kind) {
   static const char *const fit[] = {"fit", NULL};
   static const char *const curve[] = {"stress", NULL};
   static const char *const hlpv[] = {"time", "phase", NULL};
+  static const char *const snap[] = {"snap-path", NULL};
   static const char *const none[] = {NULL};
   return !kind                                 ? none
          : strcmp(kind, "response") == 0       ? response
@@ -61,6 +66,7 @@ const char *const *plot_names(const char *kind) {
          : strcmp(kind, "fit-material") == 0   ? fit
          : strcmp(kind, "material-curve") == 0 ? curve
          : strcmp(kind, "hlpv") == 0           ? hlpv
+         : strcmp(kind, "snap") == 0           ? snap
                                                : none;
 }
 
@@ -85,7 +91,7 @@ void plot_names_for(const char *kind, const json_t *result, const char *names[PL
 static enum status find(const char *plot, const struct plot_input *input,
                         const struct entry **found, struct error *error) {
   const char *kind = json_string_value(json_object_get(input->result, "kind"));
-  char known[200] = "";
+  char known[400] = "";
   for (size_t i = 0; i < ENTRIES; i++) {
     const struct entry *entry = &entries[i];
     size_t used = strlen(known);

@@ -95,3 +95,49 @@ double picture_mean_y(const struct picture *picture, int from, int to, int r, in
   }
   return sum / count;
 }
+
+static struct plot_input input_of(const json_t *result, const char *title) {
+  return (struct plot_input){.result = result, .title = title, .job_id = 7};
+}
+
+void picture_at_all_sizes(const char *plot, const json_t *result, const char *name) {
+  static const int sizes[][2] = {{900, 650}, {1600, 1200}, {400, 300}, {200, 200}, {4000, 200}};
+  struct plot_input input = input_of(result, name);
+  for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+    char file[80];
+    snprintf(file, sizeof file, "%s-%s-%d", plot, name, sizes[i][0]);
+    struct picture picture = picture_draw(plot, &input, 1, sizes[i][0], sizes[i][1], file);
+    ck_assert_uint_gt(picture_count(&picture, 28, 37, 48), 30);
+    free(picture.rgb);
+  }
+}
+
+struct picture picture_of(const char *plot, const json_t *result, const char *metric) {
+  struct plot_input input = input_of(result, "");
+  input.metric = metric;
+  return picture_draw(plot, &input, 1, 800, 600, NULL);
+}
+
+enum status picture_refuse_one(const char *plot, const json_t *result, const char *metric) {
+  struct plot_input input = input_of(result, "");
+  input.metric = metric;
+  return picture_refuse(plot, &input, 1, 800, 600);
+}
+
+size_t picture_pixels(const char *plot, const json_t *result, int r, int g, int b) {
+  struct picture picture = picture_of(plot, result, NULL);
+  size_t count = picture_count(&picture, r, g, b);
+  free(picture.rgb);
+  return count;
+}
+
+const char *picture_offered(const char *kind, const json_t *result, char text[300]) {
+  const char *names[PLOT_NAMES];
+  plot_names_for(kind, result, names);
+  text[0] = '\0';
+  for (size_t i = 0; names[i]; i++) {
+    size_t used = strlen(text);
+    snprintf(text + used, 300 - used, "%s%s", i ? " " : "", names[i]);
+  }
+  return text;
+}

@@ -21,6 +21,21 @@ struct picture picture_draw(const char *plot, const struct plot_input *inputs, s
 enum status picture_refuse(const char *plot, const struct plot_input *inputs, size_t count,
                            int width, int height);
 
+/* Draws `plot` of one result at several sizes, from tiny to wide; a title has to be there. */
+void picture_at_all_sizes(const char *plot, const json_t *result, const char *name);
+
+/* Draws `plot` of one result with 800 x 600 pixels; metric may be NULL. */
+struct picture picture_of(const char *plot, const json_t *result, const char *metric);
+
+/* Asserts that `plot` of one result is refused with a sentence; returns with what. */
+enum status picture_refuse_one(const char *plot, const json_t *result, const char *metric);
+
+/* Pixels of a colour in a picture of one result that is drawn for this. */
+size_t picture_pixels(const char *plot, const json_t *result, int r, int g, int b);
+
+/* The names that a result offers, in one text. */
+const char *picture_offered(const char *kind, const json_t *result, char text[300]);
+
 /* Pixels within a small distance of a colour. */
 size_t picture_count(const struct picture *picture, int r, int g, int b);
 

@@ -1,0 +1,156 @@
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "server/plot/bundle.h"
+#include "server/plot/data.h"
+#include "server/plot/draw.h"
+#include "server/plot/snap.h"
+
+enum { PATHS_MOST = 3, HARMONICS_MOST = 64 };
+
+/* What the states of one path, in order, say of the harmonics. */
+struct garland {
+  const json_t *list; /* of the document: states of all paths */
+  const char *path;
+  size_t harmonics;
+  double reached_kPa;              /* last state before the axisymmetric limit, or of all */
+  double lost_kPa[HARMONICS_MOST]; /* middle of the step in which it is lost; NaN: it is not */
+  double half_width_kPa[HARMONICS_MOST]; /* of that step */
+};
+
+static bool is_lost(const json_t *state, size_t harmonic) {
+  return data_element(json_object_get(state, "negative"), harmonic) > 0;
+}
+
+/* Goes along the path until the axisymmetric harmonic itself is lost: beyond its limit point the
+ * pressure falls, and nothing there is reached by inflating. */
+static void read_garland(struct garland *g) {
+  double before = NAN;
+  size_t index;
+  const json_t *state;
+  for (size_t n = 0; n < HARMONICS_MOST; n++) {
+    g->lost_kPa[n] = NAN;
+  }
+  g->reached_kPa = NAN;
+  json_array_foreach(g->list, index, state) {
+    const char *path = json_string_value(json_object_get(state, "path"));
+    double pressure = data_number(state, "pressure_kPa");
+    size_t count = json_array_size(json_object_get(state, "negative"));
+    if (!path || strcmp(path, g->path) != 0 || !isfinite(pressure)) {
+      continue;
+    }
+    count = count < HARMONICS_MOST ? count : HARMONICS_MOST;
+    g->harmonics = count > g->harmonics ? count : g->harmonics;
+    double from = isfinite(before) ? before : pressure;
+    for (size_t n = 0; n < count; n++) {
+      if (isnan(g->lost_kPa[n]) && is_lost(state, n)) {
+        double to = fmax(from, pressure); /* beyond the limit point the pressure has fallen */
+        g->lost_kPa[n] = (from + to) / 2;
+        g->half_width_kPa[n] = (to - from) / 2;
+      }
+    }
+    if (!isnan(g->lost_kPa[0])) {
+      return;
+    }
+    before = g->reached_kPa = pressure;
+  }
+}
+
+/* Adds the pressures at which harmonics are lost, and those up to which they are not. */
+static enum status add_garland(const struct garland *g, size_t place, double *errors,
+                               struct bundle *bundle, struct error *error) {
+  struct point lost[HARMONICS_MOST], kept[HARMONICS_MOST];
+  size_t lost_count = 0, kept_count = 0;
+  for (size_t n = 0; n < g->harmonics; n++) {
+    if (isfinite(g->lost_kPa[n])) {
+      errors[lost_count] = g->half_width_kPa[n];
+      lost[lost_count++] = (struct point){(double)n, g->lost_kPa[n]};
+    } else if (isfinite(g->reached_kPa)) {
+      kept[kept_count++] = (struct point){(double)n, g->reached_kPa};
+    }
+  }
+  struct chart_series like = {.colour = colour_series(place),
+                              .marker = place ? MARKER_SQUARE : MARKER_CIRCLE,
+                              .errors = errors,
+                              .name = g->path};
+  enum status status = bundle_add(bundle, like, lost, lost_count, error);
+  like.hollow = true;
+  like.errors = NULL;
+  like.name = place ? NULL : "not lost up to here";
+  return status == STATUS_OK ? bundle_add(bundle, like, kept, kept_count, error) : status;
+}
+
+/* The names of the paths whose harmonics were tested. */
+static size_t find_paths(const json_t *list, struct garland garlands[PATHS_MOST]) {
+  size_t count = 0, index;
+  const json_t *state;
+  json_array_foreach(list, index, state) {
+    const char *path = json_string_value(json_object_get(state, "path"));
+    size_t k = 0;
+    while (path && k < count && strcmp(garlands[k].path, path) != 0) {
+      k++;
+    }
+    if (path && k == count && count < PATHS_MOST) {
+      garlands[count++] = (struct garland){.list = list, .path = path};
+    }
+  }
+  return count;
+}
+
+/* Says which harmonic is lost first, and where. */
+static bool label_first(const struct garland *g, struct chart_label *label) {
+  size_t first = HARMONICS_MOST;
+  char number[TICKS_TEXT];
+  for (size_t n = 0; n < g->harmonics; n++) {
+    if (isfinite(g->lost_kPa[n]) &&
+        (first == HARMONICS_MOST || g->lost_kPa[n] < g->lost_kPa[first])) {
+      first = n;
+    }
+  }
+  if (first == HARMONICS_MOST) {
+    return false;
+  }
+  ticks_number(g->lost_kPa[first], 3, number);
+  label->at = (struct point){(double)first, g->lost_kPa[first]};
+  snprintf(label->text, sizeof label->text, "n = %zu at %s kPa", first, number);
+  return true;
+}
+
+enum status draw_stability(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                           struct error *error) {
+  const json_t *result = inputs[0].result;
+  struct garland garlands[PATHS_MOST];
+  struct bundle bundle = {.series = NULL};
+  struct chart_label labels[PATHS_MOST];
+  double errors[PATHS_MOST][HARMONICS_MOST];
+  size_t label_count = 0;
+  char subtitle[DATA_HEADING], notice[DATA_HEADING];
+  enum status status = STATUS_OK;
+  size_t paths = find_paths(json_object_get(result, "harmonics"), garlands);
+  (void)count;
+  for (size_t i = 0; i < paths && status == STATUS_OK; i++) {
+    read_garland(&garlands[i]);
+    label_count += label_first(&garlands[i], &labels[label_count]);
+    status = add_garland(&garlands[i], i, errors[i], &bundle, error);
+  }
+  data_subtitle(&inputs[0], subtitle);
+  data_notice(result, notice);
+  struct chart chart = {.title = "Pressure at which the shape stops being axisymmetric",
+                        .subtitle = subtitle,
+                        .notice = notice,
+                        .x_label = "Circumferential harmonic n (0: axisymmetric)",
+                        .y_label = "Pressure (kPa)",
+                        .from_zero = true,
+                        .whole_x = true,
+                        .series = bundle.series,
+                        .series_count = bundle.count,
+                        .labels = labels,
+                        .label_count = label_count,
+                        .empty = "No harmonics were tested"};
+  if (status == STATUS_OK) {
+    chart_draw(&chart, canvas);
+  }
+  bundle_release(&bundle);
+  return status;
+}
