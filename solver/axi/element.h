@@ -64,10 +64,10 @@ double axi_deformation(const struct axi_point *point, const double u[AXI_DOFS], 
 void axi_element_pressure(const struct axi_geometry *geometry, const struct material_spec *material,
                           const double u[AXI_DOFS], double pressure[3]);
 
-/* Share of an edge in the volume about the axis on its right, integral of pi r^2 dz from start to
- * end, at the current node positions x[a] = (r, z); exact. gradient[2 a + i] = dV/dx in m2 and,
- * unless NULL, second = d2V/dx2, the upper triangle by rows, in m. Returns the volume in m3. Only
- * of a closed contour (or one that ends at equal heights and radii held) is V a volume. */
+/* Share of an edge in the volume of the cavity on its right: minus the integral of pi r^2 dz from
+ * start to end, at the current node positions x[a] = (r, z); exact. gradient[2 a + i] = dV/dx in m2
+ * and, unless NULL, second = d2V/dx2, the upper triangle by rows, in m. Returns m3. The sum over a
+ * contour is a volume when it closes, or ends in planes z = const or on the axis. */
 double axi_edge_volume(double x[AXI_EDGE_NODES][2], double gradient[AXI_EDGE_DOFS],
                        double second[AXI_EDGE_PACKED]);
 

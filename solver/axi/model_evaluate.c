@@ -1,0 +1,155 @@
+/* Energy, volume, forces and tangent of a model, and its factors. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include "solver/axi/model_internal.h"
+
+static int packed_index(int n, int i, int j) {
+  return i <= j ? i * n - i * (i - 1) / 2 + j - i : j * n - j * (j - 1) / 2 + i - j;
+}
+
+/* Adds local forces to the forces on the unknowns. */
+static void add_force(const struct axi_model *m, const struct axi_clique *c, const double *local,
+                      double *force) {
+  for (int i = 0; i < c->locals; i++) {
+    if (c->place[i].base >= 0) {
+      force[c->place[i].base] += local[i];
+    }
+    if (c->place[i].plus) {
+      force[m->size - 1] += local[i];
+    }
+  }
+}
+
+/* The matrix of the components becomes that of the clique's unknowns. */
+static void condense(struct axi_clique *c, const double *local) {
+  memset(c->value, 0, sizeof *c->value * (size_t)(c->count * (c->count + 1) / 2));
+  for (int i = 0; i < c->locals; i++) {
+    int to[2] = {c->at[i], c->place[i].plus ? c->elongation : -1};
+    for (int j = i; j < c->locals; j++, local++) {
+      int other[2] = {c->at[j], c->place[j].plus ? c->elongation : -1};
+      for (int k = 0; k < 4; k++) {
+        int a = to[k / 2], b = other[k % 2];
+        bool mirrored = i == j && k == 2;
+        if (a >= 0 && b >= 0 && !mirrored) {
+          /* An entry below the diagonal stands for its mirror image, too. */
+          c->value[packed_index(c->count, a, b)] += a == b && i != j ? 2 * *local : *local;
+        }
+      }
+    }
+  }
+}
+
+static enum status add_elements(struct axi_model *m, bool tangent, struct error *error) {
+  const struct axi_mesh *mesh = m->mesh;
+  for (int e = 0; e < mesh->element_count; e++) {
+    struct axi_clique *c = &m->clique[e];
+    double u[AXI_DOFS], force[AXI_DOFS], packed[AXI_PACKED], energy = 0;
+    axi_element_displacements(mesh, e, m->u, u);
+    double *matrix = !tangent ? NULL : c->plain ? c->value : packed;
+    if (!axi_element_evaluate(&m->geometry[e], &mesh->region[mesh->element[e].region], u, &energy,
+                              force, matrix)) {
+      return error_set(error, STATUS_INVERTED, NULL, "element %d turned inside out", e);
+    }
+    m->energy += energy;
+    add_force(m, c, force, m->force);
+    if (tangent && !c->plain) {
+      condense(c, packed);
+    }
+  }
+  return STATUS_OK;
+}
+
+static void add_volume(struct axi_model *m, double pressure, bool tangent) {
+  const struct axi_mesh *mesh = m->mesh;
+  for (int k = 0; k < mesh->inner_count; k++) {
+    struct axi_clique *c = &m->clique[mesh->element_count + k];
+    double x[AXI_EDGE_NODES][2], gradient[AXI_EDGE_DOFS], packed[AXI_EDGE_PACKED];
+    for (int i = 0; i < AXI_EDGE_DOFS; i++) {
+      int at = 2 * mesh->inner[k].node[i / 2] + i % 2;
+      x[i / 2][i % 2] = mesh->position[at] + m->u[at];
+    }
+    m->volume += axi_edge_volume(x, gradient, tangent ? packed : NULL);
+    add_force(m, c, gradient, m->volume_gradient);
+    for (int i = 0; tangent && i < AXI_EDGE_PACKED; i++) {
+      packed[i] *= -pressure;
+    }
+    if (tangent && c->plain) {
+      memcpy(c->value, packed, sizeof packed);
+    } else if (tangent) {
+      condense(c, packed);
+    }
+  }
+}
+
+enum status axi_model_evaluate(struct axi_model *m, const double *x, double pressure, bool tangent,
+                               struct error *error) {
+  size_t bytes = sizeof *m->force * (size_t)m->size;
+  memset(m->force, 0, bytes);
+  memset(m->volume_gradient, 0, bytes);
+  m->energy = m->volume = 0;
+  axi_model_expand(m, x, m->u);
+  add_volume(m, pressure, tangent);
+  return add_elements(m, tangent, error);
+}
+
+/* ---- factors ----------------------------------------------------------------------------- */
+
+static enum status make_factor(struct axi_model *m, bool held, struct error *error) {
+  int most = m->clique_count * CLIQUE_DOFS, count = 0, last = held ? m->size - 1 : m->size;
+  int *start = malloc(((size_t)m->clique_count + 1) * sizeof *start);
+  int *dofs = malloc(((size_t)most + 1) * sizeof *dofs);
+  enum status status = STATUS_NO_MEMORY;
+  if (!start || !dofs) {
+    error_set(error, status, NULL, "no memory for a pattern of %d cliques", m->clique_count);
+    goto done;
+  }
+  for (int k = 0; k < m->clique_count; k++) {
+    start[k] = count;
+    for (int i = 0; i < m->clique[k].count; i++) {
+      int dof = m->clique[k].dof[i];
+      dofs[count++] = dof < last ? dof : -1;
+    }
+  }
+  start[m->clique_count] = count;
+  struct ldlt_pattern pattern = {.dof_count = last,
+                                 .node_count = m->mesh->node_count + 1,
+                                 .node_of = m->node_of,
+                                 .clique_count = m->clique_count,
+                                 .start = start,
+                                 .dofs = dofs};
+  status = ldlt_create(&pattern, &m->factor[held], error);
+done:
+  free(start);
+  free(dofs);
+  return status;
+}
+
+enum status axi_model_factor(struct axi_model *m, bool held, int *negative, struct error *error) {
+  if (!m->factor[held]) {
+    enum status status = make_factor(m, held, error);
+    if (status != STATUS_OK) {
+      return status;
+    }
+  }
+  *negative = ldlt_factor(m->factor[held], m->value);
+  return STATUS_OK;
+}
+
+void axi_model_product(const struct axi_model *m, const double *v, double *product) {
+  memset(product, 0, sizeof *product * (size_t)m->size);
+  for (int k = 0; k < m->clique_count; k++) {
+    const struct axi_clique *c = &m->clique[k];
+    const double *a = c->value;
+    for (int i = 0; i < c->count; i++) {
+      int p = c->dof[i];
+      for (int j = i; j < c->count; j++, a++) {
+        int q = c->dof[j];
+        if (p >= 0 && q >= 0) {
+          product[p] += *a * v[q];
+          product[q] += p != q ? *a * v[p] : 0;
+        }
+      }
+    }
+  }
+}

@@ -1,0 +1,68 @@
+/* Inside of a model: numbering of the unknowns, cliques of the tangent, factors. */
+#ifndef PNEULAB_AXI_MODEL_INTERNAL_H
+#define PNEULAB_AXI_MODEL_INTERNAL_H
+
+#include "solver/axi/model.h"
+#include "solver/fe/ldlt.h"
+
+/* A displacement component is x[base] (0 for -1), plus h when `plus`. */
+struct axi_place {
+  int base;
+  bool plus;
+};
+
+enum { CLIQUE_LOCALS = AXI_DOFS, CLIQUE_DOFS = AXI_DOFS + 1 };
+
+/* Unknowns that a small matrix couples: that of an element, of an edge under pressure. */
+struct axi_clique {
+  int locals; /* displacement components of its nodes */
+  struct axi_place place[CLIQUE_LOCALS];
+  int count; /* of different unknowns, or of components when plain */
+  int dof[CLIQUE_DOFS];
+  signed char at[CLIQUE_LOCALS]; /* place of the component's base in dof, -1 */
+  signed char elongation;        /* place of h in dof, -1 */
+  bool plain;                    /* one unknown or none a component, no two the same, no h */
+  double *value;                 /* packed upper triangle over dof; of the model's room */
+};
+
+struct axi_model {
+  const struct axi_mesh *mesh;
+  struct axi_model_options options;
+  struct axi_geometry *geometry; /* of the elements */
+  struct axi_place *place;       /* 2 node + component */
+  int size;                      /* unknowns; h is the last one when `elongation` */
+  bool elongation;
+  int *node_of;     /* size: for the ordering */
+  double *weight;   /* size: metric whose square is the mean square displacement of the body */
+  double length;    /* largest extent of the meridian, m */
+  int clique_count; /* elements, inner edges */
+  struct axi_clique *clique;
+  const double **value;   /* clique_count */
+  double *room;           /* of the cliques' values */
+  struct ldlt *factor[2]; /* with h free, with h held; made when first needed */
+  /* Of the last evaluation: */
+  double *u;               /* 2 node + i */
+  double *force;           /* size: dW/dx */
+  double *volume_gradient; /* size: dV/dx */
+  double *column;          /* size: scratch */
+  double volume, energy;
+};
+
+/* Displacement components of `count` nodes in a clique's order. */
+void axi_clique_init(const struct axi_model *model, const int *node, int count,
+                     struct axi_clique *clique);
+
+/* W, V, dW/dx and dV/dx at x; with `tangent` also the cliques of d2W/dx2 - pressure d2V/dx2.
+ * STATUS_INVERTED. */
+enum status axi_model_evaluate(struct axi_model *model, const double *x, double pressure,
+                               bool tangent, struct error *error);
+
+/* Factorises the last tangent with h free or held; *negative receives its negative pivots.
+ * DIVERGED when singular, NO_MEMORY. */
+enum status axi_model_factor(struct axi_model *model, bool held, int *negative,
+                             struct error *error);
+
+/* product = tangent x v of the last tangent, over all unknowns. */
+void axi_model_product(const struct axi_model *model, const double *v, double *product);
+
+#endif
