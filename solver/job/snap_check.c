@@ -177,7 +177,12 @@ enum status snap_derive(struct snap_spec *spec, struct error *error) {
   spec->hinge_wall = isnan(g->hinge_wall) ? g->wall : g->hinge_wall;
   spec->hinge_length = g->hinge_length;
   spec->supporting_angle = g->supporting_angle;
-  spec->crest_radius = 0.5 * (g->outer_diameter - spec->hinge_wall);
+  /* The crest is not quite in the middle of the hinge. */
+  double place =
+      (0.5 * M_PI - g->supporting_angle) / (M_PI - g->snapping_angle - g->supporting_angle);
+  double bump = sin(M_PI * place);
+  double crest = spec->wall + (spec->hinge_wall - spec->wall) * bump * bump;
+  spec->crest_radius = 0.5 * (g->outer_diameter - crest);
   double shear = 0.5 * g->pet_modulus / (1.0 + g->pet_poisson);
   spec->pet.model = MATERIAL_NEO_HOOKE;
   spec->pet.terms = 1;
