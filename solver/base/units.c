@@ -5,23 +5,32 @@
 #include <math.h>
 #include <pthread.h>
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <udunits2.h>
 
 #include "solver/base/text.h"
 
-enum { QUANTITY_MAX = 64, BASE_COUNT = 4 };
-
-struct units {
-  ut_system *system;
-};
+enum { QUANTITY_MAX = 64, BASE_COUNT = 4, KNOWN_MAX = 256, KNOWN_TEXT = 24 };
 
 /* A unit taken apart: value in SI = scale * number, SI unit = m^p0 kg^p1 s^p2 rad^p3. */
 struct dimension {
   double scale;
   int power[BASE_COUNT];
   bool linear; /* no offset, logarithm, time origin or other base unit in it */
+};
+
+/* A unit that has been read before: UDUNITS takes some microseconds for one, and a study of many
+ * members asks for the same few again and again. */
+struct known_unit {
+  char text[KNOWN_TEXT]; /* "": a free place */
+  struct dimension dimension;
+};
+
+struct units {
+  ut_system *system;
+  struct known_unit *known; /* KNOWN_MAX, each at the place of its hash: the last to come stays */
 };
 
 /* The parser and the status of UDUNITS-2 live in static variables of the library, so calls
@@ -101,8 +110,8 @@ static ut_status visit_logarithmic(const ut_unit *unit, double base, const ut_un
   return UT_SUCCESS;
 }
 
-/* false when UDUNITS does not know the unit. Call with the lock held. */
-static bool parse_unit(const struct units *units, const char *text, struct dimension *dimension) {
+/* false when UDUNITS does not know the unit. */
+static bool take_apart(const struct units *units, const char *text, struct dimension *dimension) {
   static const ut_visitor visitor = {visit_basic, visit_product, visit_galilean, visit_timestamp,
                                      visit_logarithmic};
   ut_unit *unit = ut_parse(units->system, text, UT_UTF8);
@@ -116,11 +125,42 @@ static bool parse_unit(const struct units *units, const char *text, struct dimen
   return status == UT_SUCCESS;
 }
 
+/* Place of a unit among the known ones: FNV-1a. */
+static size_t known_place(const char *text) {
+  uint32_t hash = 2166136261u;
+  for (const char *at = text; *at; at++) {
+    hash = (hash ^ (unsigned char)*at) * 16777619u;
+  }
+  return (hash ^ hash >> 16) % KNOWN_MAX;
+}
+
+/* take_apart, or what it gave before. Call with the lock held. */
+static bool parse_unit(const struct units *units, const char *text, struct dimension *dimension) {
+  struct known_unit *known = &units->known[known_place(text)];
+  if (text[0] && strcmp(known->text, text) == 0) {
+    *dimension = known->dimension;
+    return true;
+  }
+  if (!take_apart(units, text, dimension)) {
+    return false;
+  }
+  size_t length = strlen(text);
+  if (length < KNOWN_TEXT) {
+    memcpy(known->text, text, length + 1);
+    known->dimension = *dimension;
+  }
+  return true;
+}
+
 /* ---- the handle ------------------------------------------------------------------------- */
 
 enum status units_create(struct units **units, struct error *error) {
   struct units *created = calloc(1, sizeof *created);
-  if (!created) {
+  if (created) {
+    created->known = calloc(KNOWN_MAX, sizeof *created->known);
+  }
+  if (!created || !created->known) {
+    free(created);
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the unit database");
   }
   enum status status = STATUS_OK;
@@ -150,6 +190,7 @@ void units_destroy(struct units *units) {
   pthread_mutex_lock(&library_lock);
   ut_free_system(units->system);
   pthread_mutex_unlock(&library_lock);
+  free(units->known);
   free(units);
 }
 
