@@ -151,7 +151,7 @@ static enum status run_other(const struct job_spec *spec, const struct run_optio
     return curve_job(spec, document, error);
   }
   if (spec->kind == JOB_HLPV) {
-    struct result_hlpv_options hlpv = {options->events, options->cancelled};
+    struct result_hlpv_options hlpv = {.events = options->events, .cancelled = options->cancelled};
     return result_hlpv(spec, &hlpv, document, ending, error);
   }
   if (spec->kind == JOB_SNAP) {

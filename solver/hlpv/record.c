@@ -23,9 +23,9 @@ enum status recorder_open(struct recorder *recorder, struct error *error) {
   struct hlpv_trajectory *out = recorder->out;
   bool held = spec->input.profile == HLPV_HELD;
   /* One more than the product, which may fall below a whole number by round-off. */
-  recorder->sample_room = (size_t)(spec->end * spec->sample_rate) + 2;
+  recorder->sample_room = recorder->no_samples ? 0 : (size_t)(spec->end * spec->sample_rate) + 2;
   recorder->event_room = EVENTS_FIRST;
-  out->sample = calloc(recorder->sample_room, sizeof *out->sample);
+  out->sample = calloc(recorder->sample_room + 1, sizeof *out->sample);
   out->event = calloc(recorder->event_room, sizeof *out->event);
   out->hold = calloc(held ? spec->input.count : 1, sizeof *out->hold);
   if (!out->sample || !out->event || !out->hold) {
@@ -60,6 +60,9 @@ double recorder_next(const struct recorder *recorder) {
 }
 
 void recorder_sample(struct recorder *recorder, int mode, const double x[HLPV_STATES]) {
+  if (recorder->out->sample_count == recorder->sample_room) {
+    return;
+  }
   struct hlpv_sample sample = {.time = recorder_next(recorder), .mode = mode};
   sample.set_point = hlpv_set_point(&recorder->spec->input, sample.time);
   memcpy(sample.x, x, sizeof sample.x);

@@ -15,6 +15,7 @@ enum hlpv_remark { REMARK_RANGE, REMARK_STIFFNESS, REMARK_DAMPING, REMARK_PRESSU
 struct recorder {
   const struct hlpv_spec *spec;
   struct hlpv_trajectory *out;
+  bool no_samples;
   size_t sample_room, event_room;
   double small[HLPV_STATES]; /* differences that decide nothing: see hlpv_event.grazing */
   bool holding;              /* the last hold goes on */

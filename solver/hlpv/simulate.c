@@ -247,7 +247,8 @@ enum status hlpv_simulate(const struct hlpv_spec *spec, const struct hlpv_option
                           struct hlpv_trajectory *trajectory, struct error *error) {
   struct simulation s = {.spec = spec, .options = options, .mode = spec->initial_mode};
   *trajectory = (struct hlpv_trajectory){0};
-  s.recorder = (struct recorder){.spec = spec, .out = trajectory};
+  s.recorder =
+      (struct recorder){.spec = spec, .out = trajectory, .no_samples = options->no_samples};
   memcpy(s.now.x, spec->initial, sizeof s.now.x);
   check_sizes(spec, s.size);
   for (int i = 0; i < HLPV_STATES; i++) {

@@ -14,7 +14,8 @@
 struct hlpv_options {
   double deadline_s; /* clock_wall_s at which to stop, 0: none */
   bool (*cancelled)(void *context);
-  FILE *events; /* progress as JSON lines, or NULL */
+  FILE *events;    /* progress as JSON lines, or NULL */
+  bool no_samples; /* record none */
 };
 
 /* Fills *trajectory, which the caller releases in any case. What ends early keeps everything until

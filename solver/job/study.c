@@ -6,8 +6,10 @@
 #include <string.h>
 
 #include "solver/base/text.h"
+#include "solver/job/hlpv.h"
 #include "solver/job/json.h"
 #include "solver/job/reader.h"
+#include "solver/job/study_size.h"
 
 enum { CHANGES_MAX = 64, NAME_BYTES_MAX = 150 };
 
@@ -27,77 +29,6 @@ struct draft {
   const json_t *labels;   /* of the design, or NULL */
   struct json_pointer at; /* the design, or what decides in its place */
 };
-
-/* ---- how many ----------------------------------------------------------------------------- */
-
-static bool is_list(const json_t *document) {
-  return strcmp(json_string_value(json_object_get(document, "sampling")), "list") == 0;
-}
-
-static bool is_grid(const json_t *document) {
-  return strcmp(json_string_value(json_object_get(document, "sampling")), "grid") == 0;
-}
-
-static size_t value_count(const json_t *parameter) {
-  return json_array_size(json_object_get(parameter, "values"));
-}
-
-/* Number of members, not more than STUDY_MEMBERS_MAX + 1. */
-static size_t count_members(const json_t *document) {
-  if (is_list(document)) {
-    return json_array_size(json_object_get(document, "designs"));
-  }
-  size_t index, sum = 0, product = 1;
-  json_t *parameter;
-  json_array_foreach(json_object_get(document, "parameters"), index, parameter) {
-    sum += value_count(parameter);
-    product = product > STUDY_MEMBERS_MAX ? product : product * value_count(parameter);
-  }
-  size_t count = is_grid(document) ? product : sum;
-  return count > STUDY_MEMBERS_MAX ? STUDY_MEMBERS_MAX + 1 : count;
-}
-
-static size_t text_size(const json_t *value) {
-  return value ? json_dumpb(value, NULL, 0, JSON_COMPACT) : 0;
-}
-
-static enum status check_size(const json_t *document, struct error *error) {
-  bool list = is_list(document);
-  const char *wanted = list ? "designs" : "parameters", *other = list ? "parameters" : "designs";
-  const char *sampling = json_string_value(json_object_get(document, "sampling"));
-  char pointer[32];
-  if (!json_object_get(document, wanted)) {
-    return error_set(error, STATUS_INVALID, NULL,
-                     "the key \"%s\" is missing: the sampling \"%s\" needs it; for example %s",
-                     wanted, sampling,
-                     list ? "[{\"set\": {\"/actuator/taper/top\": \"1 deg\"}}]"
-                          : "[{\"pointer\": \"/actuator/chamber_gap\", \"values\": [\"1 mm\"]}]");
-  }
-  if (json_object_get(document, other)) {
-    snprintf(pointer, sizeof pointer, "/%s", other);
-    return error_set(error, STATUS_INVALID, pointer,
-                     "the sampling \"%s\" has no use for \"%s\": leave it out, or choose another "
-                     "sampling",
-                     sampling, other);
-  }
-  size_t count = count_members(document);
-  if (count > STUDY_MEMBERS_MAX) {
-    snprintf(pointer, sizeof pointer, "/%s", wanted);
-    return error_set(error, STATUS_TOO_LARGE, pointer,
-                     "the study has more than %d members, the most that is allowed",
-                     STUDY_MEMBERS_MAX);
-  }
-  size_t each = text_size(json_object_get(document, "base")) +
-                text_size(json_object_get(document, "set")) +
-                text_size(json_object_get(document, "parameters"));
-  if (each * count > STUDY_TEXT_MAX) {
-    return error_set(error, STATUS_TOO_LARGE, "/base",
-                     "%zu members of %zu bytes are %zu bytes; at most %d (16 MiB) are allowed: "
-                     "use a shorter base or fewer members",
-                     count, each, each * count, STUDY_TEXT_MAX);
-  }
-  return STATUS_OK;
-}
 
 /* ---- the changes of one member ------------------------------------------------------------ */
 
@@ -177,23 +108,23 @@ static void draft_member(struct draft *draft, const json_t *document, size_t ind
   *draft = (struct draft){.count = 0};
   add_set(draft, json_object_get(document, "set"), &draft->at);
   draft->common = draft->count;
-  if (is_list(document)) {
+  if (study_is_list(document)) {
     draft_design(draft, document, index);
     return;
   }
   const json_t *parameters = json_object_get(document, "parameters");
   size_t count = json_array_size(parameters), rest = index;
-  if (!is_grid(document)) {
+  if (!study_is_grid(document)) {
     size_t which = 0;
-    for (; rest >= value_count(json_array_get(parameters, which)); which++) {
-      rest -= value_count(json_array_get(parameters, which));
+    for (; rest >= study_value_count(json_array_get(parameters, which)); which++) {
+      rest -= study_value_count(json_array_get(parameters, which));
     }
     add_parameter(draft, document, which, rest);
     return;
   }
-  size_t period = count_members(document);
+  size_t period = study_count(document);
   for (size_t which = 0; which < count; which++) {
-    period /= value_count(json_array_get(parameters, which));
+    period /= study_value_count(json_array_get(parameters, which));
     add_parameter(draft, document, which, rest / period);
     rest %= period;
   }
@@ -273,10 +204,11 @@ static enum status check_stations(const struct study_ranking *ranking, const str
   return STATUS_OK;
 }
 
-/* Checks the member as a job of its own and takes from it what the study has to know. */
+/* Checks the member as a job of its own and takes from it what the study has to know; adds to
+ * *samples how many it will have. */
 static enum status take_member(const struct job_reader *reader, const struct draft *draft,
                                const struct study_ranking *ranking, json_t *built,
-                               struct study_member *member, struct error *error) {
+                               struct study_member *member, double *samples, struct error *error) {
   struct job_spec spec;
   enum status status = job_reader_check(reader, built, &spec, error);
   if (status != STATUS_OK) {
@@ -284,9 +216,11 @@ static enum status take_member(const struct job_reader *reader, const struct dra
   }
   memcpy(member->hash, spec.hash, sizeof member->hash);
   member->timeout_s = spec.timeout_s;
+  *samples += spec.hlpv ? spec.hlpv->end * spec.hlpv->sample_rate + 1.0 : 0.0;
   status = check_stations(ranking, draft, &spec, error);
+  bool body = spec.kind == JOB_RESPONSE;
   job_spec_release(&spec);
-  json_t *mirrored = status == STATUS_OK ? job_mirror(built) : NULL;
+  json_t *mirrored = status == STATUS_OK && body ? job_mirror(built) : NULL;
   if (mirrored) {
     status = job_hash(mirrored, member->mirrored_hash, error);
   }
@@ -296,14 +230,14 @@ static enum status take_member(const struct job_reader *reader, const struct dra
 
 static enum status make_member(const struct job_reader *reader, const json_t *document,
                                const struct study *study, bool keep, size_t index,
-                               struct study_member *member, struct error *error) {
+                               struct study_member *member, double *samples, struct error *error) {
   struct draft draft;
   draft_member(&draft, document, index);
   json_t *built = build(document, &draft, error);
   if (!built) {
     return error->status;
   }
-  enum status status = take_member(reader, &draft, &study->ranking, built, member, error);
+  enum status status = take_member(reader, &draft, &study->ranking, built, member, samples, error);
   memcpy(member->name, draft.name, sizeof member->name);
   member->labels = draft.labels ? json_deep_copy(draft.labels) : json_object();
   member->values = json_object();
@@ -317,31 +251,68 @@ static enum status make_member(const struct job_reader *reader, const json_t *do
   return status == STATUS_OK && (!member->labels || !member->values) ? no_memory(error) : status;
 }
 
+/* ---- repetitions -------------------------------------------------------------------------- */
+
+/* Members by their hash: open addressing, twice as many places as members. */
+struct hash_index {
+  int *place; /* a member, or -1 */
+  size_t size;
+};
+
+static bool hash_index_open(struct hash_index *index, size_t count) {
+  index->size = 2 * count;
+  index->place = malloc(index->size * sizeof *index->place);
+  for (size_t i = 0; index->place && i < index->size; i++) {
+    index->place[i] = -1;
+  }
+  return index->place != NULL;
+}
+
+/* The place of the first member with that hash, or the free one where it belongs. The digits of a
+ * SHA-256 are as good as random. */
+static int *hash_index_find(const struct hash_index *index, const struct study *study,
+                            const char *hash) {
+  char digits[16];
+  memcpy(digits, hash, sizeof digits - 1);
+  digits[sizeof digits - 1] = '\0';
+  size_t at = (size_t)strtoull(digits, NULL, 16) % index->size;
+  while (index->place[at] >= 0 && strcmp(study->member[index->place[at]].hash, hash) != 0) {
+    at = (at + 1) % index->size;
+  }
+  return &index->place[at];
+}
+
 /* Finds repetitions and mirror images among the members before this one. */
-static void relate(struct study *study, size_t index) {
-  struct study_member *member = &study->member[index];
-  member->same_as = member->mirror_of = -1;
-  for (size_t i = 0; i < index && member->same_as < 0; i++) {
-    const struct study_member *before = &study->member[i];
-    if (strcmp(before->hash, member->hash) == 0) {
-      member->same_as = (int)i;
-      member->mirror_of = -1;
-    } else if (member->mirror_of < 0 && strcmp(before->hash, member->mirrored_hash) == 0) {
-      member->mirror_of = (int)i;
+static void relate(struct study *study, const struct hash_index *index, size_t which) {
+  struct study_member *member = &study->member[which];
+  int *own = hash_index_find(index, study, member->hash);
+  member->same_as = *own;
+  member->mirror_of = -1;
+  if (*own < 0) {
+    if (member->mirrored_hash[0]) {
+      member->mirror_of = *hash_index_find(index, study, member->mirrored_hash);
     }
+    *own = (int)which;
   }
   study->distinct += member->same_as < 0 && member->mirror_of < 0;
 }
 
 /* ---- the ranking -------------------------------------------------------------------------- */
 
-static enum status read_ranking(const struct reader *reader, const json_t *value,
+static enum status read_ranking(const struct reader *reader, const json_t *document,
                                 struct study_ranking *ranking) {
+  const json_t *value = json_object_get(document, "ranking");
   const json_t *weights = json_object_get(value, "weights"), *station;
   size_t index;
   *ranking = (struct study_ranking){.asked = value != NULL};
   if (!value) {
     return STATUS_OK;
+  }
+  if (strcmp(study_base_kind(document), "response") != 0) {
+    return error_set(reader->error, STATUS_INVALID, "/ranking",
+                     "a ranking measures bodies at stations along their midline: its base is of "
+                     "the kind \"response\", not \"%s\"; leave it out",
+                     study_base_kind(document));
   }
   json_array_foreach(json_object_get(value, "stations"), index, station) {
     ranking->station[ranking->station_count++] = reader_quantity(reader, station, "mm");
@@ -364,27 +335,59 @@ static enum status read_ranking(const struct reader *reader, const json_t *value
 
 /* ---- all of it ---------------------------------------------------------------------------- */
 
+static enum status check_samples(double samples, struct error *error) {
+  return samples <= STUDY_SAMPLES_MAX
+             ? STATUS_OK
+             : error_set(error, STATUS_TOO_LARGE, "/keep",
+                         "the members have %.0f samples together; at most %d are kept: keep "
+                         "\"metrics\", or lower the sample rate of the base",
+                         samples, STUDY_SAMPLES_MAX);
+}
+
 enum status study_expand(const struct job_reader *job_reader, const json_t *document, bool keep,
                          struct study *study, struct error *error) {
-  *study = (struct study){.count = 0};
+  const char *kept = json_string_value(json_object_get(document, "keep"));
+  bool light = study_has_light_members(document);
+  *study = (struct study){.light = light};
+  study->keep_samples = kept ? strcmp(kept, "samples") == 0 : !light;
   struct reader reader = {job_reader_units(job_reader), error};
-  enum status status = check_size(document, error);
+  enum status status = study_check_size(document, error);
   if (status == STATUS_OK) {
-    status = read_ranking(&reader, json_object_get(document, "ranking"), &study->ranking);
+    status = read_ranking(&reader, document, &study->ranking);
   }
   if (status != STATUS_OK) {
     return status;
   }
-  size_t count = count_members(document);
+  size_t count = study_count(document);
+  struct hash_index index = {0};
   study->member = calloc(count, sizeof *study->member);
-  if (!study->member) {
+  if (!study->member || !hash_index_open(&index, count)) {
     return no_memory(error);
   }
+  double samples = 0;
   for (size_t i = 0; i < count && status == STATUS_OK; i++) {
     study->count = i + 1;
-    status = make_member(job_reader, document, study, keep, i, &study->member[i], error);
-    relate(study, i);
+    status = make_member(job_reader, document, study, keep, i, &study->member[i], &samples, error);
+    if (status == STATUS_OK) {
+      relate(study, &index, i);
+    }
   }
+  free(index.place);
+  return status == STATUS_OK && study->light && study->keep_samples ? check_samples(samples, error)
+                                                                    : status;
+}
+
+enum status study_read_member(const struct job_reader *reader, const json_t *document, size_t index,
+                              struct job_spec *spec, struct error *error) {
+  struct draft draft;
+  *spec = (struct job_spec){.kind = JOB_RESPONSE};
+  draft_member(&draft, document, index);
+  json_t *built = build(document, &draft, error);
+  if (!built) {
+    return error->status;
+  }
+  enum status status = job_reader_check(reader, built, spec, error);
+  json_decref(built);
   return status;
 }
 

@@ -5,10 +5,12 @@
 #include <jansson.h>
 #include "solver/job/spec.h"
 
-enum { STUDY_MEMBERS_MAX = 1000, STATIONS_MAX = 50 };
+/* Most members: of jobs that take a process each, and of light ones (see struct study). */
+enum { STUDY_MEMBERS_MAX = 1000, STUDY_LIGHT_MAX = 10000, STATIONS_MAX = 50 };
 
-/* Most text that the members of a study may have together, in bytes. */
-enum { STUDY_TEXT_MAX = 16 << 20 };
+/* Most text that the members of a study may have together, in bytes; of light ones, whose documents
+ * are not held at the same time; and most samples that a study of light ones may keep. */
+enum { STUDY_TEXT_MAX = 16 << 20, STUDY_LIGHT_TEXT_MAX = 64 << 20, STUDY_SAMPLES_MAX = 100000 };
 
 /* One member. Members with equal hashes are the same body under the same load; so are, but for the
  * sign of what lies across the body, those of which one has the other's mirrored hash. */
@@ -37,9 +39,14 @@ struct study_ranking {
 struct study {
   struct study_member *member;
   size_t count;
-  size_t distinct; /* members but for repetitions and mirror images */
+  bool light;        /* members take milliseconds: many are solved in one process */
+  bool keep_samples; /* of each member, in the study's result, beside its metrics */
+  size_t distinct;   /* members but for repetitions and mirror images */
   struct study_ranking ranking;
 };
+
+/* Whether the members of a study will be light, from its document. */
+bool study_has_light_members(const json_t *document);
 
 /* Expands a study whose document has passed the schema and has its defaults filled in, and checks
  * every member as the job that it is; `keep` keeps their documents. *study is owned by the caller,
@@ -48,6 +55,11 @@ struct study {
 enum status study_expand(const struct job_reader *reader, const json_t *document, bool keep,
                          struct study *study, struct error *error);
 void study_release(struct study *study);
+
+/* Reads the member `index` of a study that study_expand has accepted, as a job of its own; the
+ * caller releases *spec. The failures of job_reader_check. */
+enum status study_read_member(const struct job_reader *reader, const json_t *document, size_t index,
+                              struct job_spec *spec, struct error *error);
 
 /* Writes `value` (NULL or null: takes the key away) into `document` at `pointer` (RFC 6901).
  * Objects on the way are made when they are missing. STATUS_INVALID, with the pointer of `error`

@@ -109,8 +109,9 @@ enum status study_set(json_t *document, const char *pointer, json_t *value, stru
     }
   }
   if (at == document && strcmp(part, "kind") == 0) {
-    return error_set(error, STATUS_INVALID, NULL,
-                     "the kind cannot be changed: the members of a study are response jobs");
+    return error_set(
+        error, STATUS_INVALID, NULL,
+        "the kind cannot be changed: the members of a study are of the kind of its base");
   }
   return set_member(at, part, value, pointer, error);
 }

@@ -163,6 +163,16 @@ static json_t *statistics_object(const struct hlpv_trajectory *t, double wall_s,
                    "peak_memory_MB", clock_peak_memory_MB());
 }
 
+/* What is over time, and the model. */
+static void add_course(json_t *document, const struct hlpv_spec *spec,
+                       const struct hlpv_trajectory *t) {
+  json_object_set_new(document, "samples", samples_array(spec, t));
+  json_object_set_new(document, "events", events_array(spec, t));
+  json_object_set_new(document, "final", final_object(spec, t));
+  json_object_set_new(document, "holds", holds_array(spec, t));
+  json_object_set_new(document, "model", model_object(spec));
+}
+
 /* ---- the job ------------------------------------------------------------------------------ */
 
 enum status result_hlpv(const struct job_spec *spec, const struct result_hlpv_options *options,
@@ -172,6 +182,7 @@ enum status result_hlpv(const struct job_spec *spec, const struct result_hlpv_op
       .deadline_s = spec->timeout_s > 0 ? wall + spec->timeout_s : 0,
       .cancelled = options->cancelled,
       .events = options->events,
+      .no_samples = options->brief,
   };
   struct hlpv_trajectory t;
   struct error end = {.status = STATUS_OK};
@@ -185,15 +196,21 @@ enum status result_hlpv(const struct job_spec *spec, const struct result_hlpv_op
     status = *ending;
     goto done;
   }
-  *document = json_pack(
-      "{s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:[], s:o, s:{s:s, s:s}}",
-      "status", good ? "succeeded" : "diverged", "reason", good ? "" : status_word(*ending),
-      "message", good ? "" : end.message, "kind", "hlpv", "name", spec->name, "metrics",
-      metrics_object(spec->hlpv, &t), "samples", samples_array(spec->hlpv, &t), "events",
-      events_array(spec->hlpv, &t), "final", final_object(spec->hlpv, &t), "holds",
-      holds_array(spec->hlpv, &t), "model", model_object(spec->hlpv), "warnings",
-      warnings_array(&t), "artifacts", "statistics", statistics_object(&t, wall_s, cpu_s),
-      "provenance", "version", PNEULAB_VERSION, "spec_hash", spec->hash);
+  *document =
+      json_pack("{s:s, s:s, s:s, s:s, s:s, s:o}", "status", good ? "succeeded" : "diverged",
+                "reason", good ? "" : status_word(*ending), "message", good ? "" : end.message,
+                "kind", "hlpv", "name", spec->name, "metrics", metrics_object(spec->hlpv, &t));
+  if (*document && !options->brief) {
+    add_course(*document, spec->hlpv, &t);
+  }
+  json_t *rest = json_pack("{s:o, s:[], s:o, s:{s:s, s:s}}", "warnings", warnings_array(&t),
+                           "artifacts", "statistics", statistics_object(&t, wall_s, cpu_s),
+                           "provenance", "version", PNEULAB_VERSION, "spec_hash", spec->hash);
+  if (*document && json_object_update(*document, rest) != 0) {
+    json_decref(*document);
+    *document = NULL;
+  }
+  json_decref(rest);
   if (!*document) {
     status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the result document");
   }

@@ -9,6 +9,7 @@
 struct result_hlpv_options {
   FILE *events; /* progress as JSON lines, or NULL */
   bool (*cancelled)(void *context);
+  bool brief; /* status, metrics, warnings and statistics only */
 };
 
 /* Runs the job. On success *document is a new reference and *ending tells how the simulation ended:

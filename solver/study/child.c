@@ -12,12 +12,16 @@
 
 enum { WATCHED_MAX = 256, EXEC_FAILED = 127 };
 
+/* Makes the new process head of a group that is ended with its parent, which may have died before
+ * that took hold. */
+static bool join_parent(pid_t parent) {
+  return setpgid(0, 0) == 0 && prctl(PR_SET_PDEATHSIG, SIGKILL) == 0 && getppid() == parent;
+}
+
 /* Between fork and exec: async-signal-safe calls only. */
 static void run_child(pid_t parent, const char *const *argv, const int files[3]) {
-  /* The parent may have died before the request took hold. */
-  if (setpgid(0, 0) == 0 && prctl(PR_SET_PDEATHSIG, SIGKILL) == 0 && getppid() == parent &&
-      dup2(files[0], STDIN_FILENO) >= 0 && dup2(files[1], STDOUT_FILENO) >= 0 &&
-      dup2(files[2], STDERR_FILENO) >= 0) {
+  if (join_parent(parent) && dup2(files[0], STDIN_FILENO) >= 0 &&
+      dup2(files[1], STDOUT_FILENO) >= 0 && dup2(files[2], STDERR_FILENO) >= 0) {
     execv("/proc/self/exe", (char *const *)argv);
   }
   _exit(EXEC_FAILED);
@@ -48,6 +52,23 @@ enum status child_start(const char *const *argv, const char *output_path, const 
     }
   }
   return status;
+}
+
+enum status child_fork(void (*work)(void *context), void *context, struct child *child,
+                       struct error *error) {
+  pid_t parent = getpid(), pid = fork();
+  if (pid == 0) {
+    if (join_parent(parent)) {
+      work(context);
+    }
+    _exit(0);
+  }
+  if (pid < 0) {
+    return error_set(error, STATUS_IO, NULL, "cannot start a process for members: %s",
+                     strerror(errno));
+  }
+  *child = (struct child){.pid = pid, .pidfd = (int)syscall(SYS_pidfd_open, pid, 0)};
+  return STATUS_OK;
 }
 
 bool child_ended(struct child *child, struct child_end *end) {

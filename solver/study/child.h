@@ -23,6 +23,11 @@ struct child_end {
 enum status child_start(const char *const *argv, const char *output_path, const char *log_path,
                         struct child *child, struct error *error);
 
+/* Starts a copy of this process that calls work(context) and ends, without flushing what this one
+ * has buffered; head of a group and ended with its parent as above. STATUS_OK, or STATUS_IO. */
+enum status child_fork(void (*work)(void *context), void *context, struct child *child,
+                       struct error *error);
+
 /* Whether the process has ended; then what is left of its group is ended, too, and *child cleared.
  * Does not wait. */
 bool child_ended(struct child *child, struct child_end *end);

@@ -111,6 +111,19 @@ enum status member_store_job(const struct member_store *store, const struct stud
   return status;
 }
 
+enum status member_store_write(const struct member_store *store, const struct study_member *member,
+                               const json_t *document, struct error *error) {
+  char *path = member_store_path(store, member, MEMBER_PART);
+  enum status status = STATUS_OK;
+  if (!path || !document ||
+      json_dump_file(document, path, JSON_COMPACT | JSON_REAL_PRECISION(12)) != 0) {
+    status = error_set(error, STATUS_IO, NULL, "cannot write %s: %s", path ? path : "a result",
+                       strerror(errno));
+  }
+  free(path);
+  return status;
+}
+
 enum status member_store_keep(const struct member_store *store, const struct study_member *member,
                               struct error *error) {
   char *part = member_store_path(store, member, MEMBER_PART);

@@ -30,6 +30,10 @@ char *member_store_path(const struct member_store *store, const struct study_mem
 enum status member_store_job(const struct member_store *store, const struct study_member *member,
                              struct error *error);
 
+/* Writes what a process would have printed: a result, or an error. STATUS_OK or STATUS_IO. */
+enum status member_store_write(const struct member_store *store, const struct study_member *member,
+                               const json_t *document, struct error *error);
+
 /* What the member's process has printed so far becomes its result. STATUS_OK or STATUS_IO. */
 enum status member_store_keep(const struct member_store *store, const struct study_member *member,
                               struct error *error);

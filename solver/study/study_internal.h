@@ -3,7 +3,12 @@
 #define PNEULAB_STUDY_STUDY_INTERNAL_H
 
 #include "solver/job/study.h"
+#include "solver/study/child.h"
 #include "solver/study/store.h"
+#include "solver/study/study_run.h"
+
+/* A member gets this much longer than its own time limit, in s. */
+#define STUDY_MARGIN_S 30.0
 
 /* What has become of a member that is solved itself. */
 struct member_state {
@@ -19,11 +24,61 @@ struct study_run_figures {
   double wall_s, cpu_s;
 };
 
+/* One process and the member it solves; of light members, the process alone. */
+struct slot {
+  struct child child;
+  size_t member;
+  double deadline_s;
+  bool overdue; /* was asked to end because of the deadline */
+};
+
+struct study_run {
+  const struct study_options *options;
+  const json_t *document;
+  struct job_reader *reader;
+  struct study study;
+  struct member_store store;
+  struct member_state *state; /* of every member */
+  struct slot slot[STUDY_JOBS_MAX];
+  int slots;
+  size_t next; /* first member that has not been looked at */
+  size_t settled;
+  double deadline_s; /* clock_wall_s, infinite without a limit */
+  struct study_run_figures figures;
+};
+
+/* Why the study has to end now, or STATUS_OK. */
+enum status study_ending(const struct study_run *run);
+
+/* The next member to be computed, settling on the way those whose result is there; the number of
+ * members when there is none. */
+size_t study_next_member(struct study_run *run);
+
+/* Notes why a member has no result. */
+void study_fail(struct member_state *state, const char *reason, const char *message);
+
+/* Notes that a member has its result or never will. */
+void study_settle(struct study_run *run, size_t index);
+
+/* Ends the processes that still run, and waits for that. */
+void study_stop(struct study_run *run);
+
+/* Solves light members until all are settled or the study has to end.
+ * STATUS_OK, STATUS_IO or STATUS_NO_MEMORY. */
+enum status study_work_light(struct study_run *run, enum status *ending, struct error *error);
+
 /* The result document of the study, a new reference; `state` has one entry a member. NULL when
  * memory runs out. */
 json_t *study_document(const struct job_spec *spec, const struct study *study,
                        const struct member_state *state, const struct member_store *store,
                        const struct study_run_figures *figures, enum status ending);
+
+/* For each metric that a member of the result has: its extremes with the members that have them,
+ * its mean and its standard deviation. A new reference. */
+json_t *study_summary(const json_t *members);
+
+/* Adds to `warnings` that members have some, and drops theirs when they are much text. */
+void study_thin_warnings(json_t *members, json_t *warnings);
 
 /* Turns a member's result into that of its mirror image about y = 0, in place. */
 void study_mirror_result(json_t *result);

@@ -64,14 +64,21 @@ void study_mirror_result(json_t *result) {
 /* ---- members ------------------------------------------------------------------------------ */
 
 /* Takes over what the study keeps of a member's result. */
-static void take_result(json_t *member, json_t *result) {
-  static const char *const kept[] = {"status",     "reason",   "message",         "metrics",
-                                     "samples",    "midlines", "rest_midline_mm", "fit",
-                                     "statistics", "warnings"};
-  for (size_t i = 0; i < sizeof kept / sizeof *kept; i++) {
-    json_t *value = json_object_get(result, kept[i]);
+static void take_result(json_t *member, json_t *result, bool samples) {
+  static const char *const always[] = {"status", "reason",     "message", "metrics",
+                                       "fit",    "statistics", "warnings"};
+  static const char *const course[] = {"samples", "midlines", "rest_midline_mm", "events", "holds",
+                                       "steps",   "paths"};
+  for (size_t i = 0; i < sizeof always / sizeof *always; i++) {
+    json_t *value = json_object_get(result, always[i]);
     if (value) {
-      json_object_set(member, kept[i], value);
+      json_object_set(member, always[i], value);
+    }
+  }
+  for (size_t i = 0; samples && i < sizeof course / sizeof *course; i++) {
+    json_t *value = json_object_get(result, course[i]);
+    if (value) {
+      json_object_set(member, course[i], value);
     }
   }
 }
@@ -128,7 +135,7 @@ static json_t *member_object(const struct study *study, size_t index,
     if (mirrored) {
       study_mirror_result(result);
     }
-    take_result(object, result);
+    take_result(object, result, study->keep_samples);
   } else {
     json_object_set_new(object, "reason", json_string(fate->settled ? fate->reason : "not_run"));
     json_object_set_new(
@@ -195,7 +202,7 @@ static void warn_of_failures(const json_t *members, json_t *warnings) {
   if (failed > 0) {
     char sentence[400], quoted[100];
     snprintf(sentence, sizeof sentence,
-             "%zu of %zu members did not reach their load; the last of them is %s (%s)", failed,
+             "%zu of %zu members did not come to their end; the last of them is %s (%s)", failed,
              json_array_size(members), text_quote(quoted, sizeof quoted, name), reason);
     json_array_append_new(warnings, json_string(sentence));
   }
@@ -221,6 +228,14 @@ static double members_cpu_s(const struct study *study, const json_t *members) {
   return sum;
 }
 
+static void drop_statistics(json_t *members) {
+  size_t index;
+  json_t *member;
+  json_array_foreach(members, index, member) {
+    json_object_del(member, "statistics");
+  }
+}
+
 static const char *ending_message(enum status ending) {
   return ending == STATUS_OK         ? ""
          : ending == STATUS_DIVERGED ? "not a single member could be solved"
@@ -234,19 +249,25 @@ json_t *study_document(const struct job_spec *spec, const struct study *study,
   for (size_t i = 0; i < study->count; i++) {
     json_array_append_new(members, member_object(study, i, state, store));
   }
+  double cpu_s = members_cpu_s(study, members);
   warn_of_failures(members, warnings);
   thin_midlines(members, warnings);
+  if (study->light) {
+    study_thin_warnings(members, warnings);
+    drop_statistics(members);
+  }
   json_t *ranking =
       study->ranking.asked ? ranking_document(&study->ranking, members, warnings) : NULL;
   json_t *document = json_pack(
-      "{s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:[], s:{s:f, s:f, s:f}, s:{s:s, s:s}}",
+      "{s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:[], s:{s:f, s:f, s:f}, s:{s:s, "
+      "s:s}}",
       "status", ending == STATUS_OK ? "succeeded" : "diverged", "reason",
       ending == STATUS_OK ? "" : status_word(ending), "message", ending_message(ending), "kind",
       "study", "name", spec->name, "metrics", metrics(study, figures, members), "parameters",
-      parameters(spec->document), "samples", table(members), "members", members, "warnings",
-      warnings, "artifacts", "statistics", "wall_s", figures->wall_s, "cpu_s", figures->cpu_s,
-      "members_cpu_s", members_cpu_s(study, members), "provenance", "version", PNEULAB_VERSION,
-      "spec_hash", spec->hash);
+      parameters(spec->document), "summary", study_summary(members), "samples", table(members),
+      "members", members, "warnings", warnings, "artifacts", "statistics", "wall_s",
+      figures->wall_s, "cpu_s", figures->cpu_s, "members_cpu_s", cpu_s, "provenance", "version",
+      PNEULAB_VERSION, "spec_hash", spec->hash);
   if (document && ranking) {
     json_object_set(document, "ranking", ranking);
   }

@@ -12,29 +12,8 @@
 
 enum { POLL_MS = 250, EXIT_EARLY = 3 };
 
-/* A member gets this much longer than its own time limit, and as long to end when asked to, in s.
- */
-static const double margin_s = 30, grace_s = 5;
-
-/* One process and the member it solves. */
-struct slot {
-  struct child child;
-  size_t member;
-  double deadline_s;
-  bool overdue; /* was asked to end because of the deadline */
-};
-
-struct study_run {
-  const struct study_options *options;
-  struct study study;
-  struct member_store store;
-  struct member_state *state; /* of every member */
-  struct slot slot[STUDY_JOBS_MAX];
-  int slots;
-  size_t next; /* first member that has not been looked at */
-  size_t settled;
-  struct study_run_figures figures;
-};
+/* A process gets this long to end when asked to, in s. */
+static const double grace_s = 5;
 
 static int core_count(void) {
   cpu_set_t set;
@@ -47,13 +26,12 @@ static bool is_own(const struct study_member *member) {
   return member->same_as < 0 && member->mirror_of < 0;
 }
 
-static void fail(struct member_state *state, const char *reason, const char *message) {
+void study_fail(struct member_state *state, const char *reason, const char *message) {
   snprintf(state->reason, sizeof state->reason, "%s", reason);
   snprintf(state->message, sizeof state->message, "%s", message);
 }
 
-/* Notes that a member has its result or never will. */
-static void settle(struct study_run *run, size_t index) {
+void study_settle(struct study_run *run, size_t index) {
   struct member_state *state = &run->state[index];
   const struct study_member *member = &run->study.member[index];
   state->settled = true;
@@ -98,7 +76,7 @@ static enum status start(struct study_run *run, struct slot *slot, size_t index,
   slot->member = index;
   slot->overdue = false;
   slot->deadline_s =
-      member->timeout_s > 0 ? clock_wall_s() + member->timeout_s + margin_s : INFINITY;
+      member->timeout_s > 0 ? clock_wall_s() + member->timeout_s + STUDY_MARGIN_S : INFINITY;
   free(job);
   free(part);
   free(log);
@@ -113,18 +91,18 @@ static void explain(const struct study_run *run, const struct slot *slot,
   const char *code = json_string_value(json_object_get(error, "code"));
   const char *message = json_string_value(json_object_get(error, "message"));
   if (slot->overdue) {
-    fail(state, status_word(STATUS_TIMEOUT), "the solver overran the member's time limit");
+    study_fail(state, status_word(STATUS_TIMEOUT), "the solver overran the member's time limit");
   } else if (code && message) {
-    fail(state, code, message);
+    study_fail(state, code, message);
   } else if (end->signal != 0) {
     const char *name = sigdescr_np(end->signal);
     snprintf(sentence, sizeof sentence, "signal %d (%s) ended the solver", end->signal,
              name ? name : "unknown");
-    fail(state, "crashed", sentence);
+    study_fail(state, "crashed", sentence);
   } else {
     snprintf(sentence, sizeof sentence, "the solver ended with exit code %d and no result",
              end->exit_code);
-    fail(state, "crashed", sentence);
+    study_fail(state, "crashed", sentence);
   }
   json_decref(error);
 }
@@ -147,28 +125,36 @@ static enum status finish(struct study_run *run, const struct slot *slot,
     member_store_remove(&run->store, member, MEMBER_PART);
   }
   json_decref(result);
-  settle(run, slot->member);
+  study_settle(run, slot->member);
   return STATUS_OK;
 }
 
 /* ---- all of them -------------------------------------------------------------------------- */
 
-/* The next member to be computed, settling on the way those whose result is there; the number of
- * members when there is none. */
-static size_t next_member(struct study_run *run) {
+/* The result of an earlier run, if it has what this one keeps. A new reference, or NULL. */
+static json_t *earlier_result(const struct study_run *run, size_t index) {
+  json_t *result = member_store_result(&run->store, &run->study.member[index]);
+  if (run->study.light && run->study.keep_samples && !json_object_get(result, "samples")) {
+    json_decref(result);
+    return NULL;
+  }
+  return result;
+}
+
+size_t study_next_member(struct study_run *run) {
   for (; run->next < run->study.count; run->next++) {
     size_t index = run->next;
     if (!is_own(&run->study.member[index])) {
       continue;
     }
-    json_t *result = member_store_result(&run->store, &run->study.member[index]);
+    json_t *result = earlier_result(run, index);
     if (!result) {
       run->next++;
       return index;
     }
     json_decref(result);
     run->state[index].resumed = true;
-    settle(run, index);
+    study_settle(run, index);
   }
   return run->study.count;
 }
@@ -188,6 +174,13 @@ static enum status look_after(struct study_run *run, struct slot *slot, struct e
   return STATUS_OK;
 }
 
+enum status study_ending(const struct study_run *run) {
+  bool cancelled = run->options->cancelled && run->options->cancelled(NULL);
+  return cancelled                          ? STATUS_CANCELLED
+         : clock_wall_s() > run->deadline_s ? STATUS_TIMEOUT
+                                            : STATUS_OK;
+}
+
 static int running(const struct study_run *run, const struct child *children[STUDY_JOBS_MAX]) {
   int count = 0;
   for (int s = 0; s < run->slots; s++) {
@@ -199,8 +192,7 @@ static int running(const struct study_run *run, const struct child *children[STU
 }
 
 /* Keeps the slots busy until every member is settled, or the study has to end. */
-static enum status work(struct study_run *run, double deadline_s, enum status *ending,
-                        struct error *error) {
+static enum status work(struct study_run *run, enum status *ending, struct error *error) {
   enum status status = STATUS_OK;
   const struct child *children[STUDY_JOBS_MAX];
   for (;;) {
@@ -209,15 +201,13 @@ static enum status work(struct study_run *run, double deadline_s, enum status *e
       if (slot->child.pid) {
         status = look_after(run, slot, error);
       }
-      size_t index = status == STATUS_OK && !slot->child.pid ? next_member(run) : run->study.count;
+      size_t index =
+          status == STATUS_OK && !slot->child.pid ? study_next_member(run) : run->study.count;
       if (index < run->study.count) {
         status = start(run, slot, index, error);
       }
     }
-    bool cancelled = run->options->cancelled && run->options->cancelled(NULL);
-    *ending = cancelled                     ? STATUS_CANCELLED
-              : clock_wall_s() > deadline_s ? STATUS_TIMEOUT
-                                            : STATUS_OK;
+    *ending = study_ending(run);
     int count = running(run, children);
     if (status != STATUS_OK || *ending != STATUS_OK || count == 0) {
       return status;
@@ -226,8 +216,7 @@ static enum status work(struct study_run *run, double deadline_s, enum status *e
   }
 }
 
-/* Ends the processes that still run, and waits for that. */
-static void stop(struct study_run *run) {
+void study_stop(struct study_run *run) {
   const struct child *children[STUDY_JOBS_MAX];
   double kill_at_s = clock_wall_s() + grace_s;
   for (int count = running(run, children), sent = 0; count > 0; count = running(run, children)) {
@@ -240,7 +229,9 @@ static void stop(struct study_run *run) {
     for (int s = 0; s < run->slots; s++) {
       struct child_end end;
       if (run->slot[s].child.pid && child_ended(&run->slot[s].child, &end)) {
-        member_store_remove(&run->store, &run->study.member[run->slot[s].member], MEMBER_PART);
+        if (!run->study.light) {
+          member_store_remove(&run->store, &run->study.member[run->slot[s].member], MEMBER_PART);
+        }
       }
     }
   }
@@ -248,12 +239,11 @@ static void stop(struct study_run *run) {
 
 static enum status prepare(struct study_run *run, const struct job_spec *spec,
                            struct error *error) {
-  struct job_reader *reader = NULL;
-  enum status status = job_reader_create(&reader, error);
+  bool light = study_has_light_members(spec->document);
+  enum status status = job_reader_create(&run->reader, error);
   if (status == STATUS_OK) {
-    status = study_expand(reader, spec->document, true, &run->study, error);
+    status = study_expand(run->reader, spec->document, !light, &run->study, error);
   }
-  job_reader_destroy(reader);
   if (status != STATUS_OK) {
     return status;
   }
@@ -283,17 +273,17 @@ static bool any_solved(const struct study_run *run) {
 
 enum status study_run(const struct job_spec *spec, const struct study_options *options,
                       json_t **document, enum status *ending, struct error *error) {
-  struct study_run run = {.options = options};
+  struct study_run run = {.options = options, .document = spec->document};
   double start_s = clock_wall_s();
-  double deadline_s = spec->timeout_s > 0 ? start_s + spec->timeout_s : INFINITY;
+  run.deadline_s = spec->timeout_s > 0 ? start_s + spec->timeout_s : INFINITY;
   *document = NULL;
   *ending = STATUS_OK;
   enum status status = prepare(&run, spec, error);
   if (status != STATUS_OK) {
     goto done;
   }
-  status = work(&run, deadline_s, ending, error);
-  stop(&run);
+  status = run.study.light ? study_work_light(&run, ending, error) : work(&run, ending, error);
+  study_stop(&run);
   if (status != STATUS_OK) {
     goto done;
   }
@@ -309,6 +299,7 @@ enum status study_run(const struct job_spec *spec, const struct study_options *o
 done:
   member_store_close(&run.store, &run.study);
   study_release(&run.study);
+  job_reader_destroy(run.reader);
   free(run.state);
   return status;
 }
