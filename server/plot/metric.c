@@ -46,15 +46,18 @@ static bool varies_pressure(const json_t *result) {
 
 const char *metric_choose(const json_t *result, const char *asked) {
   static const char *const usual[] = {"sensitivity_deg_per_kPa", "bending_angle_deg",
-                                      "twist_angle_deg", "contraction_pct"};
+                                      "twist_angle_deg",         "contraction_pct",
+                                      "trigger_pressure_kPa",    "extension_ratio"};
+  enum { USUAL = sizeof usual / sizeof *usual };
   const json_t *members = json_object_get(result, "members");
   const json_t *first = json_array_get(json_object_get(result, "published"), 0);
   const char *published = json_string_value(json_object_get(first, "metric"));
-  const char *choices[5] = {asked ? asked : published, usual[0], usual[1], usual[2], usual[3]};
+  const char *choices[1 + USUAL] = {asked ? asked : published};
+  memcpy(choices + 1, usual, sizeof usual);
   if (varies_pressure(result)) {
     choices[1] = NULL;
   }
-  for (size_t c = 0; c < (asked ? 1 : 5); c++) {
+  for (size_t c = 0; c < (asked ? 1 : 1 + USUAL); c++) {
     for (size_t i = 0; choices[c] && i < json_array_size(members); i++) {
       const json_t *metrics = json_object_get(json_array_get(members, i), "metrics");
       if (isfinite(data_number(metrics, choices[c]))) {

@@ -6,7 +6,7 @@
 #include "solver/study/study_internal.h"
 
 /* A study whose members have more points of midlines than this keeps of each the midline at the
- * last pressure only, so that the document stays below the 16 MiB that the daemon takes. */
+ * last pressure only, so that the document stays below what the daemon takes. */
 enum { MIDLINE_POINTS_MAX = 200000 };
 
 /* ---- mirror images ------------------------------------------------------------------------ */

@@ -1,4 +1,5 @@
 /* From the text of a study to its members. */
+#include <stdio.h>
 #include <string.h>
 
 #include "solver/job/study.h"
@@ -11,6 +12,15 @@
   "\"material\":\"dragon-skin-20\",\"load\":{\"pressure\":{\"to\":\"10 kPa\",\"steps\":2}},"       \
   "\"timeout\":\"2 min\"}"
 #define STUDY(rest) "{\"kind\":\"study\",\"name\":\"s\",\"base\":" BASE "," rest "}"
+#define HYBRID                                                                                     \
+  "{\"kind\":\"hlpv\",\"model\":{\"mass\":\"60 g\",\"gamma\":\"5.577 "                             \
+  "N/psi\",\"modes\":{\"free\":{"                                                                  \
+  "\"stiffness\":\"2000 N/m\",\"damping\":\"15 N s/m\",\"alpha\":\"-9 1/s\",\"beta\":\"9 "         \
+  "1/s\"}}},"                                                                                      \
+  "\"initial\":{\"mode\":\"free\"},\"input\":{\"hold\":[[\"0 s\",\"3 psi\"]]},\"end\":\"1 s\","    \
+  "\"sample_rate\":\"120 Hz\",\"timeout\":\"2 min\"}"
+#define HYBRIDS(rest) "{\"kind\":\"study\",\"base\":" HYBRID "," rest "}"
+#define MASSES(...) "{\"pointer\":\"/model/mass\",\"values\":[" __VA_ARGS__ "]}"
 #define GAP                                                                                        \
   "{\"pointer\":\"/actuator/chamber_gap\",\"name\":\"gap\",\"values\":[\"1 mm\",\"2 mm\"]}"
 #define SIDES                                                                                      \
@@ -167,6 +177,63 @@ START_TEST(rankings_are_read) {
 }
 END_TEST
 
+/* A grid of a by b hybrid models; the last value of the first parameter repeats the first. */
+static void write_grid(char *text, size_t size, int a, int b, const char *options) {
+  size_t used = (size_t)snprintf(text, size,
+                                 "{\"kind\":\"study\",\"base\":" HYBRID
+                                 ",\"sampling\":\"grid\"%s,\"parameters\":["
+                                 "{\"pointer\":\"/model/mass\",\"values\":[",
+                                 options);
+  for (int i = 0; i < a; i++) {
+    used += (size_t)snprintf(text + used, size - used, "%s\"%d g\"", i ? "," : "",
+                             40 + (i + 1 == a ? 0 : i));
+  }
+  used += (size_t)snprintf(text + used, size - used,
+                           "]},{\"pointer\":\"/model/modes/free/damping\",\"values\":[");
+  for (int i = 0; i < b; i++) {
+    used += (size_t)snprintf(text + used, size - used, "%s\"%d N s/m\"", i ? "," : "", 1 + i);
+  }
+  snprintf(text + used, size - used, "]}]}");
+}
+
+START_TEST(hybrid_models_may_be_many) {
+  static char text[20000];
+  struct job_spec spec, member;
+  struct study study;
+  write_grid(text, sizeof text, 31, 40, "");
+  ck_assert_int_eq(job_reader_read(reader, text, strlen(text), &spec, NULL), STATUS_OK);
+  ck_assert_int_eq(study_expand(reader, spec.document, false, &study, NULL), STATUS_OK);
+  ck_assert(study.light && !study.keep_samples);
+  ck_assert_uint_eq(study.count, 1240);
+  ck_assert_uint_eq(study.distinct, 1200);
+  ck_assert_int_eq(study.member[1239].same_as, 39);
+  ck_assert_int_eq(study.member[1199].same_as, -1);
+  ck_assert_str_eq(study.member[41].name, "mass 41 g, damping 2 N s/m");
+  ck_assert_ptr_null(study.member[41].document);
+  ck_assert_int_eq(study_read_member(reader, spec.document, 41, &member, NULL), STATUS_OK);
+  ck_assert_str_eq(member.hash, study.member[41].hash);
+  ck_assert_int_eq(member.kind, JOB_HLPV);
+  job_spec_release(&member);
+  study_release(&study);
+  job_spec_release(&spec);
+}
+END_TEST
+
+START_TEST(too_many_hybrid_models_are_refused) {
+  static char text[20000];
+  struct job_spec spec;
+  struct error error;
+  write_grid(text, sizeof text, 101, 100, "");
+  ck_assert_int_eq(job_reader_read(reader, text, strlen(text), &spec, &error), STATUS_TOO_LARGE);
+  ck_assert_str_eq(error.pointer, "/parameters");
+  ck_assert_msg(strstr(error.message, "10000") != NULL, "%s", error.message);
+  write_grid(text, sizeof text, 30, 30, ",\"keep\":\"samples\"");
+  ck_assert_int_eq(job_reader_read(reader, text, strlen(text), &spec, &error), STATUS_TOO_LARGE);
+  ck_assert_str_eq(error.pointer, "/keep");
+  ck_assert_msg(strstr(error.message, "108900 samples") != NULL, "%s", error.message);
+}
+END_TEST
+
 #define LIST(set)                                                                                  \
   STUDY("\"sampling\":\"list\",\"designs\":[{\"set\":{}},{\"name\":\"B\",\"set\":" set "}]")
 #define MANY(p) "{\"pointer\":\"/mesh/" p "\",\"values\":[1,2,3,4,5,6,7,8,9,10,11]}"
@@ -201,7 +268,8 @@ static const struct {
      "/designs/1/set/~1actuator~1chambers~11~1count", "leads nowhere"},
     {LIST("{\"/load/gravity/3\":0}"), STATUS_INVALID, "/designs/1/set/~1load~1gravity~13",
      "the array has 3"},
-    {LIST("{\"/kind\":\"study\"}"), STATUS_INVALID, "/designs/1/set/~1kind", "response"},
+    {LIST("{\"/kind\":\"study\"}"), STATUS_INVALID, "/designs/1/set/~1kind",
+     "the kind of its base"},
     {LIST("{\"/material\":null}"), STATUS_INVALID, "/designs/1", "\"material\" is missing"},
     {STUDY("\"set\":{\"/contact\":1},\"sampling\":\"list\",\"designs\":[{\"set\":{}}]"),
      STATUS_INVALID, "/set/~1contact", "true or false"},
@@ -214,6 +282,15 @@ static const struct {
     {STUDY("\"sampling\":\"list\",\"designs\":[{\"set\":{}}],\"ranking\":{\"stations\":[\"8 mm\","
            "\"30 mm\"]}"),
      STATUS_INVALID, "/ranking/stations/1", "24 mm long"},
+    {HYBRIDS("\"sampling\":\"grid\",\"parameters\":[" MASSES("\"1 g\",\"-1 g\"") "]"),
+     STATUS_INVALID, "/parameters/0/values/1", "member \"mass -1 g\", /model/mass: "},
+    {HYBRIDS("\"sampling\":\"grid\",\"parameters\":[" MASSES(
+         "\"1 g\"") "],\"ranking\":{\"stations\":[\"8 mm\"]}"),
+     STATUS_INVALID, "/ranking", "not \"hlpv\""},
+    {HYBRIDS("\"sampling\":\"list\",\"designs\":[{\"set\":{\"/kind\":\"response\"}}]"),
+     STATUS_INVALID, "/designs/0/set/~1kind", "the kind of its base"},
+    {HYBRIDS("\"sampling\":\"list\",\"keep\":\"all\",\"designs\":[{\"set\":{}}]"), STATUS_INVALID,
+     "/keep", "\"metrics\" or \"samples\""},
 };
 
 START_TEST(bad_studies_are_refused) {
@@ -239,6 +316,8 @@ int main(void) {
   tcase_add_test(tcase, designs_are_listed);
   tcase_add_test(tcase, members_hash_like_the_jobs_they_are);
   tcase_add_test(tcase, rankings_are_read);
+  tcase_add_test(tcase, hybrid_models_may_be_many);
+  tcase_add_test(tcase, too_many_hybrid_models_are_refused);
   tcase_add_loop_test(tcase, bad_studies_are_refused, 0, sizeof bad / sizeof *bad);
   suite_add_tcase(suite, tcase);
   return suite_run(suite);
