@@ -14,12 +14,12 @@ bool figure_save(unsigned char *png, size_t size, const char *path) {
   return good;
 }
 
-bool figure_write(const char *program, const char *plot, const struct plot_input *input, int width,
-                  int height, const char *path) {
+bool figure_write(const char *program, const char *plot, const struct plot_input *inputs,
+                  size_t count, int width, int height, const char *path) {
   unsigned char *png = NULL;
   size_t size = 0;
   struct error error = {.status = STATUS_OK};
-  if (plot_render(plot, input, 1, width, height, &png, &size, &error) != STATUS_OK) {
+  if (plot_render(plot, inputs, count, width, height, &png, &size, &error) != STATUS_OK) {
     fprintf(stderr, "%s: %s: %s\n", program, path, error.message);
     return false;
   }

@@ -10,9 +10,9 @@
  * error. */
 bool figure_save(unsigned char *png, size_t size, const char *path);
 
-/* Draws `plot` from one job, width x height pixels, into the file `path`. False with the reason on
- * standard error, after the name of the program. */
-bool figure_write(const char *program, const char *plot, const struct plot_input *input, int width,
-                  int height, const char *path);
+/* Draws `plot` from `count` jobs, width x height pixels, into the file `path`. False with the
+ * reason on standard error, after the name of the program. */
+bool figure_write(const char *program, const char *plot, const struct plot_input *inputs,
+                  size_t count, int width, int height, const char *path);
 
 #endif

@@ -55,15 +55,36 @@ struct finding {
  *   "value" JSON pointer into that result; its error estimate is beside it as KEY_error
  *   "key"   instead: a key of the samples, with "at_kPa" (interpolated), "reaches" (gives the
  *           pressure in kPa, interpolated), or "extreme": "largest" or "smallest" over all samples
- *   "factor" to be multiplied with; 1 unless given */
+ *   "factor" to be multiplied with; 1 unless given
+ * or one of these, with two rules each:
+ *   "difference" the first less the second
+ *   "ratio"      the first over the second
+ *   "shift_ratio" with four: what the second differs from the first, over what the fourth differs
+ *                 from the third, both in size */
 struct finding finding_from(const struct works *works, const json_t *rule);
 
-/* Draws every plot that a result has, into its directory, and the listed ones into `figures`, where
- * none stays that could not be drawn. */
-bool write_plots(const struct works *works, const json_t *data, const char *figures);
+/* Whether any job of the paper, which is the name of a folder, is wanted. */
+bool paper_is_wanted(const struct works *works, const char *paper, const char *only);
 
-/* Sections of the document. */
-void print_runs(FILE *out, const struct works *works);
+/* Draws every plot that a result has, into its directory, and the listed ones of the papers that
+ * are wanted into `figures`, where none of these stays that could not be drawn. */
+bool write_plots(const struct works *works, const json_t *data, const char *only,
+                 const char *figures);
+
+/* The document that an earlier run wrote, which the caller frees; NULL when there is none. Its
+ * sections stand between marks that kept_begin and kept_end write. */
+char *kept_read(const char *path);
+void kept_begin(FILE *out, const char *section);
+void kept_end(FILE *out);
+
+/* Prints a section, or the row of a job in the table of runs, as it is in `kept` (NULL: nothing).
+ * False when it has none. *cpu_s: the processor time that the row tells. */
+bool kept_print(FILE *out, const char *kept, const char *section);
+bool kept_print_row(FILE *out, const char *kept, const char *job, double *cpu_s);
+
+/* Sections of the document. kept: rows of jobs that have no result here are taken from it; NULL:
+ * such jobs are missing. */
+void print_runs(FILE *out, const struct works *works, const char *kept);
 void print_values(FILE *out, const struct works *works, const json_t *data, const char *paper);
 void print_trends(FILE *out, const struct works *works, const json_t *data, const char *paper);
 void print_figures(FILE *out, const json_t *data, const char *paper, const char *figures);

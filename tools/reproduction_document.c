@@ -244,11 +244,16 @@ static void print_outcome(FILE *out, const json_t *result) {
   }
 }
 
-void print_runs(FILE *out, const struct works *works) {
+void print_runs(FILE *out, const struct works *works, const char *kept) {
   double total = 0;
   fputs("| job | outcome | processor time |\n|---|---|---|\n", out);
   for (int w = 0; w < works->count; w++) {
     const struct work *work = &works->item[w];
+    double kept_s = 0;
+    if (!work->result && kept_print_row(out, kept, work->name, &kept_s)) {
+      total += kept_s;
+      continue;
+    }
     fprintf(out, "| [`%s`](../jobs/%s.json) | ", work->name, work->name);
     if (!work->result) {
       fputs("missing | |\n", out);

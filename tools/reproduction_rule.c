@@ -83,7 +83,8 @@ static double from_samples(const json_t *result, const json_t *rule, const char 
                       : interpolate(samples, key, "pressure_kPa", reaches);
 }
 
-struct finding finding_from(const struct works *works, const json_t *rule) {
+/* Our value of a rule that names a result. */
+static struct finding from_result(const struct works *works, const json_t *rule) {
   struct finding finding = {.error = -1};
   const char *from = json_string_value(json_object_get(rule, "from"));
   const char *pointer = json_string_value(json_object_get(rule, "value"));
@@ -113,4 +114,59 @@ struct finding finding_from(const struct works *works, const json_t *rule) {
              reason && reason[0] ? ", " : "", reason ? reason : "");
   }
   return finding;
+}
+
+/* The findings of `count` rules; false, with why in *first, when one is missing. */
+static bool find_all(const struct works *works, const json_t *rules, size_t count,
+                     struct finding *found) {
+  for (size_t i = 0; i < count; i++) {
+    found[i] = finding_from(works, json_array_get(rules, i));
+    if (!found[i].found) {
+      found[0] = found[i];
+      return false;
+    }
+  }
+  return true;
+}
+
+/* Errors add up: nothing is known of how they go together. */
+static struct finding difference_of(struct finding a, struct finding b) {
+  bool known = a.error >= 0 && b.error >= 0;
+  return (struct finding){
+      .found = true, .value = a.value - b.value, .error = known ? a.error + b.error : -1};
+}
+
+static struct finding ratio_of(struct finding a, struct finding b) {
+  bool known = a.error >= 0 && b.error >= 0;
+  struct finding ratio = {.found = b.value != 0, .value = a.value / b.value, .error = -1};
+  if (known && ratio.found) {
+    ratio.error = (a.error + fabs(ratio.value) * b.error) / fabs(b.value);
+  }
+  if (!ratio.found) {
+    snprintf(ratio.missing, sizeof ratio.missing, "missing: what it is compared with is 0");
+  }
+  return ratio;
+}
+
+static struct finding size_of(struct finding a) {
+  a.value = fabs(a.value);
+  return a;
+}
+
+struct finding finding_from(const struct works *works, const json_t *rule) {
+  const json_t *difference = json_object_get(rule, "difference");
+  const json_t *ratio = json_object_get(rule, "ratio");
+  const json_t *shifts = json_object_get(rule, "shift_ratio");
+  struct finding found[4];
+  if (shifts) {
+    return find_all(works, shifts, 4, found) ? ratio_of(size_of(difference_of(found[1], found[0])),
+                                                        size_of(difference_of(found[3], found[2])))
+                                             : found[0];
+  }
+  if (difference || ratio) {
+    return !find_all(works, difference ? difference : ratio, 2, found) ? found[0]
+           : difference ? difference_of(found[0], found[1])
+                        : ratio_of(found[0], found[1]);
+  }
+  return from_result(works, rule);
 }

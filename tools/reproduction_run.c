@@ -15,7 +15,7 @@
 #include "solver/job/spec.h"
 #include "tools/reproduction.h"
 
-static const char *const folders[] = {"multicurvature", "ptba", "tapered", "material"};
+static const char *const folders[] = {"beast", "multicurvature", "ptba", "tapered", "material"};
 
 enum { FOLDERS = sizeof folders / sizeof *folders, JOB_BYTES_MAX = 1 << 24, PROCESSES_MAX = 64 };
 
@@ -123,6 +123,18 @@ bool work_is_wanted(const struct work *work, const char *only) {
   size_t folder = (size_t)(slash - work->name);
   return !only || strcmp(only, work->name) == 0 || strcmp(only, slash + 1) == 0 ||
          (strlen(only) == folder && strncmp(only, work->name, folder) == 0);
+}
+
+bool paper_is_wanted(const struct works *works, const char *paper, const char *only) {
+  size_t folder = strlen(paper);
+  for (int w = 0; w < works->count; w++) {
+    const struct work *work = &works->item[w];
+    if (strncmp(work->name, paper, folder) == 0 && work->name[folder] == '/' &&
+        work_is_wanted(work, only)) {
+      return true;
+    }
+  }
+  return !only;
 }
 
 /* ---- running ------------------------------------------------------------------------------ */

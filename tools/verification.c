@@ -138,7 +138,7 @@ static void print_case(FILE *out, const json_t *r) {
 
 static bool write_figure(const json_t *r, const char *plot, const char *path) {
   struct plot_input input = {.result = r, .title = text_of(member(r, "case"), "title")};
-  return figure_write("verification", plot, &input, FIGURE_WIDTH, FIGURE_HEIGHT, path);
+  return figure_write("verification", plot, &input, 1, FIGURE_WIDTH, FIGURE_HEIGHT, path);
 }
 
 static bool write_figures(const struct results *results, const char *directory) {

@@ -136,8 +136,9 @@ check "a study out of time" "timeout not_run" \
 # ---- the tool -----------------------------------------------------------------------------------
 
 if [ -x "$build/tools/reproduction" ]; then
-  mkdir -p "$dir/source/jobs/multicurvature" "$dir/source/docs/figures"
+  mkdir -p "$dir/source/jobs/multicurvature" "$dir/source/jobs/tapered" "$dir/source/docs/figures"
   study .base >"$dir/source/jobs/multicurvature/two.json"
+  study '.base | .actuator.chamber_gap = "2 mm"' >"$dir/source/jobs/tapered/other.json"
   study '.base = {file: "two.json"}' >"$dir/source/jobs/multicurvature/sides.json"
   cat >"$dir/source/docs/reproduction.json" <<'END'
 { "values": [
@@ -145,6 +146,19 @@ if [ -x "$build/tools/reproduction" ]; then
       "ours": { "from": "multicurvature/two", "value": "/metrics/bending_angle_deg" } },
     { "paper": "multicurvature", "what": "half of it", "published": 10, "relation": "below",
       "ours": { "from": "multicurvature/two", "key": "bending_angle_deg", "at_kPa": 4 } },
+    { "paper": "multicurvature", "what": "less", "published": 0,
+      "ours": { "difference": [ { "from": "multicurvature/two", "value": "/metrics/bending_angle_deg" },
+        { "from": "tapered/other", "value": "/metrics/bending_angle_deg" } ] } },
+    { "paper": "multicurvature", "what": "over", "published": 1,
+      "ours": { "ratio": [ { "from": "tapered/other", "value": "/metrics/bending_angle_deg" },
+        { "from": "multicurvature/two", "value": "/metrics/bending_angle_deg" } ] } },
+    { "paper": "multicurvature", "what": "shifts", "published": 3, "relation": "below",
+      "ours": { "shift_ratio": [ { "from": "tapered/other", "value": "/metrics/bending_angle_deg" },
+        { "from": "multicurvature/two", "value": "/metrics/bending_angle_deg" },
+        { "from": "multicurvature/two", "value": "/metrics/bending_angle_deg" },
+        { "from": "tapered/other", "key": "bending_angle_deg", "at_kPa": 0 } ] } },
+    { "paper": "tapered", "what": "another's", "published": "not given",
+      "ours": { "from": "tapered/other", "value": "/metrics/bending_angle_deg" } },
     { "paper": "multicurvature", "what": "nobody's", "published": 1,
       "ours": { "from": "multicurvature/three", "value": "/metrics/bending_angle_deg" } } ],
   "trends": [
@@ -157,6 +171,8 @@ if [ -x "$build/tools/reproduction" ]; then
       [ { "label": "3", "from": "multicurvature/sides#gap 1 mm, left 2 deg, right 2 deg", "value": "/metrics/bending_angle_deg" } ] ] } ],
   "figures": [
     { "paper": "multicurvature", "from": "multicurvature/two", "plot": "angle", "file": "two", "caption": "Two" },
+    { "paper": "tapered", "from": "tapered/other", "plot": "angle", "file": "other", "caption": "Other" },
+    { "paper": "multicurvature", "from": ["multicurvature/two", "tapered/other"], "plot": "overlay", "file": "both", "caption": "Both" },
     { "paper": "multicurvature", "from": "multicurvature/three", "plot": "angle", "file": "three", "caption": "Three" } ],
   "ranking": { "from": "multicurvature/sides", "mean_weight": 0.5, "best": 3, "published": [
     { "rank": 1, "name": "gap 2 mm, left 2 deg, right 2 deg", "mean": 0.648, "variance": 0.269, "final": 0.6729 } ] } }
@@ -164,7 +180,7 @@ END
   for section in VALUES TRENDS FIGURES; do
     printf '@%s multicurvature@\n' $section
   done >"$dir/source/docs/REPRODUCTION.in.md"
-  printf '@RANKING@\n@RUNS@\nthe end\n' >>"$dir/source/docs/REPRODUCTION.in.md"
+  printf '@VALUES tapered@\n@FIGURES tapered@\n@RANKING@\n@RUNS@\nthe end\n' >>"$dir/source/docs/REPRODUCTION.in.md"
   reproduce() {
     "$build/tools/reproduction" --solver "$solve" --source "$dir/source" --build "$dir/rep" "$@" \
       2>"$dir/said" || { cat "$dir/said"; fail "the tool"; }
@@ -174,7 +190,7 @@ END
   grep -q '^| gap | rising | 1: missing, 2: missing | missing |$' "$document" ||
     fail "the part that was not run: $(cat "$document")"
   reproduce
-  check "runs of the second call" 1 "$(grep -c '^  run ' "$dir/said")"
+  check "runs of the second call" 2 "$(grep -c '^  run ' "$dir/said")"
   reproduce
   check "runs of the third call" 0 "$(grep -c '^  run ' "$dir/said")"
   angle=$(jq '.metrics.bending_angle_deg' "$dir/rep/multicurvature/two/result.json")
@@ -188,6 +204,21 @@ END
   grep -q '^!\[Two\](figures/reproduction/two.png)$' "$document" || fail "a figure"
   grep -q '^\*Three\*: missing' "$document" || fail "a missing figure"
   grep -q '^the end$' "$document" || fail "the template's own lines"
+  other=$(jq '.metrics.bending_angle_deg' "$dir/rep/tapered/other/result.json")
+  grep -q "^| less | 0 | $(jq -nr "$angle - $other" | xargs printf %.4g) | " "$document" || fail "a difference"
+  grep -q "^| over | 1 | $(jq -nr "$other / $angle" | xargs printf %.4g) | " "$document" || fail "a ratio"
+  # both shifts in size: that between the two bodies, and that of one from nothing
+  grep -q "^| shifts | below 3 | $(jq -nr "(($angle - $other) / $angle) | fabs" | xargs printf %.4g) | holds" \
+    "$document" || fail "a ratio of shifts: $(cat "$document")"
   [ -s "$dir/source/docs/figures/reproduction/two.png" ] || fail "the picture"
+  [ -s "$dir/source/docs/figures/reproduction/both.png" ] || fail "the picture of two jobs"
   [ -s "$dir/rep/multicurvature/two/angle.png" ] || fail "the pictures of a result"
+  # what --only leaves alone keeps its section, its picture and its row, though its result is gone
+  cp "$document" "$dir/before.md"
+  rm -r "$dir/rep/tapered"
+  reproduce --only multicurvature
+  grep -q "^| another's | not given | $(printf %.4g "$other") " "$document" || fail "a kept value"
+  grep -q '^!\[Other\](figures/reproduction/other.png)$' "$document" || fail "a kept figure"
+  check "the kept row" "$(grep 'jobs/tapered/other' "$dir/before.md")" "$(grep 'jobs/tapered/other' "$document")"
+  check "the time of all" "$(grep '^Together' "$dir/before.md")" "$(grep '^Together' "$document")"
 fi
