@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "server/plot/data.h"
+#include "server/plot/extension.h"
 #include "server/plot/metric.h"
 #include "server/plot/ranking.h"
 
@@ -45,6 +46,16 @@ const char *offer_measured(const struct plot_input *input) {
   return json_array_size(json_object_get(input->result, "measured")) > 0
              ? NULL
              : "the job gives no measured curve";
+}
+
+const char *offer_curves(const struct plot_input *input) {
+  const json_t *members = json_object_get(input->result, "members");
+  bool any = json_array_size(members) == 0;
+  for (size_t i = 0; i < json_array_size(members) && !any; i++) {
+    const json_t *member = json_array_get(members, i);
+    any = json_array_size(json_object_get(member, "samples")) > 0 || extension_is_of(member);
+  }
+  return any ? NULL : "of the members only metrics were kept";
 }
 
 const char *offer_metric(const struct plot_input *input) {

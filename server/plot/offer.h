@@ -12,6 +12,8 @@ const char *offer_spatial(const struct plot_input *input);
 /* A response with measured points. */
 const char *offer_measured(const struct plot_input *input);
 
+/* A study in which some member has more than metrics, or that has no members yet. */
+const char *offer_curves(const struct plot_input *input);
 /* A study in which some member has the metric. */
 const char *offer_metric(const struct plot_input *input);
 /* A hybrid model with two held set-points at least. */

@@ -28,7 +28,7 @@ static const struct entry entries[] = {
     {"surface", "response", draw_surface, NULL},
     {"convergence", "verify", draw_convergence, NULL},
     {"curve", "verify", draw_curve, NULL},
-    {"curves", "study", draw_curves, NULL},
+    {"curves", "study", draw_curves, offer_curves},
     {"metric", "study", draw_metric, offer_metric},
     {"ranking", "study", draw_ranking, offer_ranking},
     {"workspace", "study", draw_workspace, offer_workspace},

@@ -67,8 +67,8 @@ void study_mirror_result(json_t *result) {
 static void take_result(json_t *member, json_t *result, bool samples) {
   static const char *const always[] = {"status", "reason",     "message", "metrics",
                                        "fit",    "statistics", "warnings"};
-  static const char *const course[] = {"samples", "midlines", "rest_midline_mm", "events", "holds",
-                                       "steps",   "paths"};
+  static const char *const course[] = {"samples", "midlines", "rest_midline_mm", "events",
+                                       "holds",   "steps",    "paths",           "held"};
   for (size_t i = 0; i < sizeof always / sizeof *always; i++) {
     json_t *value = json_object_get(result, always[i]);
     if (value) {
