@@ -25,8 +25,12 @@ static int leader(const struct axi_mesh *mesh, int node, int component, int *ahe
   return -1;
 }
 
-static enum status number_component(struct axi_model *m, int node, int component,
-                                    struct error *error) {
+struct axi_place *axi_model_place(const struct axi_model *m, int node, int component) {
+  int row = m->shell ? node / m->options.row_nodes : 0;
+  return &m->place[m->shell ? SHELL_ROW * row + component : 2 * node + component];
+}
+
+enum status axi_model_number(struct axi_model *m, int node, int component, struct error *error) {
   const struct axi_mesh *mesh = m->mesh;
   int ahead = 0, first = leader(mesh, node, component, &ahead);
   enum axi_hold hold = first < 0 ? AXI_FREE : hold_of(mesh, first, component);
@@ -35,8 +39,8 @@ static enum status number_component(struct axi_model *m, int node, int component
     return error_set(error, STATUS_INVALID, NULL,
                      "node %d of the mesh is tied to no free or fixed node", node);
   }
-  struct axi_place *place = &m->place[2 * node + component];
-  struct axi_place *lead = &m->place[2 * first + component];
+  struct axi_place *place = axi_model_place(m, node, component);
+  struct axi_place *lead = axi_model_place(m, first, component);
   if (hold == AXI_FREE && lead->base < 0) {
     m->node_of[m->size] = first;
     lead->base = m->size++;
@@ -52,8 +56,11 @@ static enum status number(struct axi_model *m, struct error *error) {
   for (int i = 0; i < 2 * m->mesh->node_count; i++) {
     m->place[i].base = -1;
   }
-  for (int i = 0; status == STATUS_OK && i < 2 * m->mesh->node_count; i++) {
-    status = number_component(m, i / 2, i % 2, error);
+  if (m->shell) {
+    status = axi_model_number_rows(m, error);
+  }
+  for (int i = 0; !m->shell && status == STATUS_OK && i < 2 * m->mesh->node_count; i++) {
+    status = axi_model_number(m, i / 2, i % 2, error);
   }
   if (status == STATUS_OK && m->elongation) {
     m->node_of[m->size++] = m->mesh->node_count;
@@ -78,10 +85,18 @@ static signed char join(struct axi_clique *c, int dof) {
 }
 
 void axi_clique_init(const struct axi_model *m, const int *node, int count, struct axi_clique *c) {
-  int bases = 0;
-  *c = (struct axi_clique){.locals = 2 * count, .elongation = -1, .plain = true};
+  *c = (struct axi_clique){.locals = 2 * count};
   for (int i = 0; i < c->locals; i++) {
-    c->place[i] = m->place[2 * node[i / 2] + i % 2];
+    c->place[i] = *axi_model_place(m, node[i / 2], i % 2);
+  }
+  axi_clique_join(m, c);
+}
+
+void axi_clique_join(const struct axi_model *m, struct axi_clique *c) {
+  int bases = 0;
+  c->elongation = -1;
+  c->plain = true;
+  for (int i = 0; i < c->locals; i++) {
     bases += c->place[i].base >= 0;
     c->at[i] = c->place[i].base < 0 ? -1 : join(c, c->place[i].base);
     c->plain &= !c->place[i].plus;
@@ -106,8 +121,15 @@ static enum status make_cliques(struct axi_model *m, struct error *error) {
   size_t room = 0;
   for (int k = 0; k < m->clique_count; k++) {
     bool element = k < mesh->element_count;
-    axi_clique_init(m, element ? mesh->element[k].node : mesh->inner[k - mesh->element_count].node,
-                    element ? AXI_NODES : AXI_EDGE_NODES, &m->clique[k]);
+    int edge = k - mesh->element_count;
+    if (m->shell) {
+      axi_clique_init_rows(
+          m, element ? axi_shell_element_row(m->shell, k) : axi_shell_edge_row(m->shell, edge),
+          &m->clique[k]);
+    } else {
+      axi_clique_init(m, element ? mesh->element[k].node : mesh->inner[edge].node,
+                      element ? AXI_NODES : AXI_EDGE_NODES, &m->clique[k]);
+    }
     room += (size_t)(m->clique[k].count * (m->clique[k].count + 1) / 2);
   }
   m->room = malloc((room + 1) * sizeof *m->room);
@@ -145,7 +167,7 @@ static enum status measure(struct axi_model *m, struct error *error) {
       const struct axi_point *p = &m->geometry[e].point[g];
       total += p->weight;
       for (int i = 0; i < AXI_DOFS; i++) {
-        const struct axi_place *place = &m->place[2 * node[i / 2] + i % 2];
+        const struct axi_place *place = axi_model_place(m, node[i / 2], i % 2);
         int dof = place->base >= 0 ? place->base : place->plus ? m->size - 1 : -1;
         if (dof >= 0) {
           m->weight[dof] += p->weight * p->n[i / 2];
@@ -174,11 +196,12 @@ static bool reserve(struct axi_model *m) {
   m->clique = calloc(cliques + 1, sizeof *m->clique);
   m->value = calloc(cliques + 1, sizeof *m->value);
   m->u = calloc(dofs, sizeof *m->u);
+  m->q = calloc(dofs, sizeof *m->q);
   m->force = calloc(dofs, sizeof *m->force);
   m->volume_gradient = calloc(dofs, sizeof *m->volume_gradient);
   m->column = calloc(dofs, sizeof *m->column);
   return m->geometry && m->place && m->node_of && m->weight && m->clique && m->value && m->u &&
-         m->force && m->volume_gradient && m->column;
+         m->q && m->force && m->volume_gradient && m->column;
 }
 
 enum status axi_model_create(const struct axi_mesh *mesh, const struct axi_model_options *options,
@@ -193,6 +216,9 @@ enum status axi_model_create(const struct axi_mesh *mesh, const struct axi_model
   if (!m || !reserve(m)) {
     status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for a model of %d nodes",
                        mesh->node_count);
+  }
+  if (status == STATUS_OK && m->options.row_nodes > 0) {
+    status = axi_shell_create(mesh, m->options.row_nodes, &m->shell, error);
   }
   if (status == STATUS_OK) {
     status = number(m, error);
@@ -217,6 +243,7 @@ void axi_model_destroy(struct axi_model *m) {
   }
   ldlt_destroy(m->factor[0]);
   ldlt_destroy(m->factor[1]);
+  axi_shell_destroy(m->shell);
   free(m->geometry);
   free(m->place);
   free(m->node_of);
@@ -225,6 +252,7 @@ void axi_model_destroy(struct axi_model *m) {
   free((void *)m->value);
   free(m->room);
   free(m->u);
+  free(m->q);
   free(m->force);
   free(m->volume_gradient);
   free(m->column);
@@ -250,18 +278,28 @@ bool axi_model_has_elongation(const struct axi_model *model) {
 }
 
 int axi_model_equation(const struct axi_model *model, int node, int component) {
-  return model->place[2 * node + component].base;
+  bool inside = model->shell && node % model->options.row_nodes != model->options.row_nodes / 2;
+  return inside ? -1 : axi_model_place(model, node, component)->base;
 }
 
 void axi_model_expand(const struct axi_model *model, const double *x, double *u) {
-  double h = model->elongation ? x[model->size - 1] : 0;
-  for (int i = 0; i < 2 * model->mesh->node_count; i++) {
+  double h = model->elongation ? x[model->size - 1] : 0, q[SHELL_ROW];
+  int rows = model->shell ? model->mesh->node_count / model->options.row_nodes : 0;
+  for (int row = 0; row < rows; row++) {
+    axi_model_row(model, x, row, q);
+    axi_shell_expand(model->shell, row, q, u);
+  }
+  for (int i = 0; !model->shell && i < 2 * model->mesh->node_count; i++) {
     const struct axi_place *p = &model->place[i];
     u[i] = (p->base >= 0 ? x[p->base] : 0) + (p->plus ? h : 0);
   }
 }
 
 void axi_model_gather(const struct axi_model *model, const double *u, double *x) {
+  if (model->shell) {
+    axi_model_gather_rows(model, u, x);
+    return;
+  }
   for (int i = 0; i < 2 * model->mesh->node_count; i++) {
     const struct axi_place *p = &model->place[i];
     if (p->base >= 0 && !p->plus) {

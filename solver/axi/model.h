@@ -16,12 +16,14 @@ struct axi_model_options {
   bool contact; /* of inner edges with inner ones, outer with outer ones, and the axis */
   double contact_stiffness; /* Pa/m; 0: chosen from the stiffness of the surface's elements */
   double contact_offset;    /* thickness at which touching begins, m; 0: from the element size */
+  int row_nodes; /* of a shell (solver/axi/shell.h): nodes of a row through the wall, whose middle
+                  * one is held and tied for it, and does not touch; 0: a solid */
 };
 
 /* Checks the mesh and numbers the unknowns. `mesh` must outlive the model; options NULL: no
  * contact. On success the caller owns *out (axi_model_destroy). Returns STATUS_GEOMETRY for
- * elements turned inside out or of negative radius, INVALID for ties that do not end in a free or
- * fixed node, NO_MEMORY. */
+ * elements turned inside out or of negative radius and rows that are not straight, INVALID for ties
+ * that do not end in a free or fixed node and for a shell with contact, NO_MEMORY. */
 enum status axi_model_create(const struct axi_mesh *mesh, const struct axi_model_options *options,
                              struct axi_model **out, struct error *error);
 void axi_model_destroy(struct axi_model *model);

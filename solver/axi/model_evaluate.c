@@ -40,15 +40,39 @@ static void condense(struct axi_clique *c, const double *local) {
   }
 }
 
+/* Over the displacements of the nodes, or the unknowns of a shell's rows. */
+static bool evaluate_element(const struct axi_model *m, int e, double *energy, double *force,
+                             double *matrix) {
+  double u[AXI_DOFS];
+  if (m->shell) {
+    const double *q = m->q + SHELL_ROW * axi_shell_element_row(m->shell, e);
+    return axi_shell_element(m->shell, e, q, energy, force, matrix);
+  }
+  axi_element_displacements(m->mesh, e, m->u, u);
+  return axi_element_evaluate(&m->geometry[e], &m->mesh->region[m->mesh->element[e].region], u,
+                              energy, force, matrix);
+}
+
+static double evaluate_edge(const struct axi_model *m, int k, double *gradient, double *matrix) {
+  double x[AXI_EDGE_NODES][2];
+  if (m->shell) {
+    const double *q = m->q + SHELL_ROW * axi_shell_edge_row(m->shell, k);
+    return axi_shell_volume(m->shell, k, q, gradient, matrix);
+  }
+  for (int i = 0; i < AXI_EDGE_DOFS; i++) {
+    int at = 2 * m->mesh->inner[k].node[i / 2] + i % 2;
+    x[i / 2][i % 2] = m->mesh->position[at] + m->u[at];
+  }
+  return axi_edge_volume(x, gradient, matrix);
+}
+
 static enum status add_elements(struct axi_model *m, bool tangent, struct error *error) {
   const struct axi_mesh *mesh = m->mesh;
   for (int e = 0; e < mesh->element_count; e++) {
     struct axi_clique *c = &m->clique[e];
-    double u[AXI_DOFS], force[AXI_DOFS], packed[AXI_PACKED], energy = 0;
-    axi_element_displacements(mesh, e, m->u, u);
+    double force[AXI_DOFS], packed[AXI_PACKED], energy = 0;
     double *matrix = !tangent ? NULL : c->plain ? c->value : packed;
-    if (!axi_element_evaluate(&m->geometry[e], &mesh->region[mesh->element[e].region], u, &energy,
-                              force, matrix)) {
+    if (!evaluate_element(m, e, &energy, force, matrix)) {
       return error_set(error, STATUS_INVERTED, NULL, "element %d turned inside out", e);
     }
     m->energy += energy;
@@ -64,18 +88,15 @@ static void add_volume(struct axi_model *m, double pressure, bool tangent) {
   const struct axi_mesh *mesh = m->mesh;
   for (int k = 0; k < mesh->inner_count; k++) {
     struct axi_clique *c = &m->clique[mesh->element_count + k];
-    double x[AXI_EDGE_NODES][2], gradient[AXI_EDGE_DOFS], packed[AXI_EDGE_PACKED];
-    for (int i = 0; i < AXI_EDGE_DOFS; i++) {
-      int at = 2 * mesh->inner[k].node[i / 2] + i % 2;
-      x[i / 2][i % 2] = mesh->position[at] + m->u[at];
-    }
-    m->volume += axi_edge_volume(x, gradient, tangent ? packed : NULL);
+    double gradient[SHELL_DOFS], packed[SHELL_PACKED];
+    int count = c->locals * (c->locals + 1) / 2;
+    m->volume += evaluate_edge(m, k, gradient, tangent ? packed : NULL);
     add_force(m, c, gradient, m->volume_gradient);
-    for (int i = 0; tangent && i < AXI_EDGE_PACKED; i++) {
+    for (int i = 0; tangent && i < count; i++) {
       packed[i] *= -pressure;
     }
     if (tangent && c->plain) {
-      memcpy(c->value, packed, sizeof packed);
+      memcpy(c->value, packed, sizeof *packed * (size_t)count);
     } else if (tangent) {
       condense(c, packed);
     }
@@ -89,6 +110,9 @@ enum status axi_model_evaluate(struct axi_model *m, const double *x, double pres
   memset(m->volume_gradient, 0, bytes);
   m->energy = m->volume = 0;
   axi_model_expand(m, x, m->u);
+  for (int row = 0; m->shell && row < m->mesh->node_count / m->options.row_nodes; row++) {
+    axi_model_row(m, x, row, m->q + SHELL_ROW * row);
+  }
   add_volume(m, pressure, tangent);
   return add_elements(m, tangent, error);
 }

@@ -3,6 +3,7 @@
 #define PNEULAB_AXI_MODEL_INTERNAL_H
 
 #include "solver/axi/model.h"
+#include "solver/axi/shell.h"
 #include "solver/fe/ldlt.h"
 
 /* A displacement component is x[base] (0 for -1), plus h when `plus`. */
@@ -29,7 +30,8 @@ struct axi_model {
   const struct axi_mesh *mesh;
   struct axi_model_options options;
   struct axi_geometry *geometry; /* of the elements */
-  struct axi_place *place;       /* 2 node + component */
+  struct axi_shell *shell;       /* NULL: a solid */
+  struct axi_place *place;       /* 2 node + component; of a shell, 3 row + component */
   int size;                      /* unknowns; h is the last one when `elongation` */
   bool elongation;
   int *node_of;     /* size: for the ordering */
@@ -42,6 +44,7 @@ struct axi_model {
   struct ldlt *factor[2]; /* with h free, with h held; made when first needed */
   /* Of the last evaluation: */
   double *u;               /* 2 node + i */
+  double *q;               /* 3 row + i, of a shell */
   double *force;           /* size: dW/dx */
   double *volume_gradient; /* size: dV/dx */
   double *column;          /* size: scratch */
@@ -51,6 +54,21 @@ struct axi_model {
 /* Displacement components of `count` nodes in a clique's order. */
 void axi_clique_init(const struct axi_model *model, const int *node, int count,
                      struct axi_clique *clique);
+/* The rest of a clique from its `locals` and `place`. */
+void axi_clique_join(const struct axi_model *model, struct axi_clique *clique);
+
+/* What component 0 or 1 of a node is; of a shell, of its row's middle node. */
+struct axi_place *axi_model_place(const struct axi_model *model, int node, int component);
+
+/* Numbers a component of a node and of what it is tied to. INVALID as axi_model_create. */
+enum status axi_model_number(struct axi_model *model, int node, int component, struct error *error);
+
+/* The same for all unknowns of a shell; the clique of the three rows from `row` on; the unknowns of
+ * a row at x, and x from the displacements u of the nodes. */
+enum status axi_model_number_rows(struct axi_model *model, struct error *error);
+void axi_clique_init_rows(const struct axi_model *model, int row, struct axi_clique *clique);
+void axi_model_row(const struct axi_model *model, const double *x, int row, double q[SHELL_ROW]);
+void axi_model_gather_rows(const struct axi_model *model, const double *u, double *x);
 
 /* W, V, dW/dx and dV/dx at x; with `tangent` also the cliques of d2W/dx2 - pressure d2V/dx2.
  * STATUS_INVERTED. */
