@@ -234,47 +234,67 @@ static void stretched(const double t[9], double stretch, const double n[3], doub
 /* What the law gives at F (I + (stretch - 1) n x n). */
 struct law {
   double stretch, energy, stress[9], tangent[81];
-  double rate[9];          /* dF/dstretch = F n x n */
-  double slope, curvature; /* of the energy by the stretch */
+  double rate[9];   /* dF/dstretch = F n x n */
+  double curvature; /* of the energy by the stretch */
 };
 
-/* The stretch of least energy by Newton's method from that of an incompressible body. */
+/* Derivative of the energy by the stretch. */
+static double law_slope(const struct material_spec *material, double kappa, const double f[9],
+                        const double n[3], const double rate[9], double stretch,
+                        struct kinematics *k, double stress[9]) {
+  double slope = 0;
+  stretched(f, stretch, n, k->f);
+  kinematics_complete(k);
+  hyperelastic_isochoric(material, k, stress, NULL);
+  double p = kappa * (k->j - 1) * k->j;
+  for (int a = 0; a < 9; a++) {
+    slope += (stress[a] + p * k->cofactor[a]) * rate[a];
+  }
+  return slope;
+}
+
+/* The stretch of least energy by the secant method from that of an incompressible body, then all of
+ * the law there. False when there is none. */
 static bool find_stretch(const struct material_spec *material, const double f[9], const double n[3],
                          struct law *law) {
   enum { ROUNDS = 40 };
   struct kinematics k;
   memcpy(k.f, f, sizeof k.f);
-  double kappa = axi_bulk_modulus(material), j = kinematics_complete(&k);
-  law->stretch = 1 / j;
-  if (!(j > 0) || !isfinite(law->stretch)) {
+  double kappa = axi_bulk_modulus(material), j = kinematics_complete(&k), slope, last = 0, at = 0;
+  if (!(j > 0)) {
     return false;
   }
   for (int i = 0; i < 9; i++) {
     double along = f[i / 3 * 3] * n[0] + f[i / 3 * 3 + 1] * n[1] + f[i / 3 * 3 + 2] * n[2];
     law->rate[i] = along * n[i % 3];
   }
-  for (int round = 0; round < ROUNDS; round++) {
-    stretched(f, law->stretch, n, k.f);
-    kinematics_complete(&k);
-    law->energy = hyperelastic_isochoric(material, &k, law->stress, law->tangent);
-    law->energy += add_volumetric(kappa, &k, law->stress, law->tangent);
-    law->slope = law->curvature = 0;
-    for (int a = 0; a < 9; a++) {
-      law->slope += law->stress[a] * law->rate[a];
-      for (int b = 0; b < 9; b++) {
-        law->curvature += law->rate[a] * law->tangent[9 * a + b] * law->rate[b];
-      }
+  law->stretch = 1 / j;
+  law->curvature = kappa * j * j * (1 + 4 / (3 * material->bulk_ratio));
+  for (int round = 0;; round++) {
+    slope = law_slope(material, kappa, f, n, law->rate, law->stretch, &k, law->stress);
+    if (round > 0 && slope != last) {
+      law->curvature = (slope - last) / (law->stretch - at);
     }
-    double step = -law->slope / law->curvature;
-    if (!(law->curvature > 0)) {
+    double step = -slope / law->curvature;
+    if (!(law->curvature > 0) || round == ROUNDS) {
       return false;
     }
-    if (fabs(step) <= 1e-12 * law->stretch) {
-      return true;
+    if (fabs(step) <= 1e-13 * law->stretch) {
+      break;
     }
+    last = slope;
+    at = law->stretch;
     law->stretch = fmax(law->stretch + step, 0.5 * law->stretch);
   }
-  return false;
+  law->energy = hyperelastic_isochoric(material, &k, law->stress, law->tangent);
+  law->energy += add_volumetric(kappa, &k, law->stress, law->tangent);
+  law->curvature = 0;
+  for (int a = 0; a < 9; a++) {
+    for (int b = 0; b < 9; b++) {
+      law->curvature += law->rate[a] * law->tangent[9 * a + b] * law->rate[b];
+    }
+  }
+  return law->curvature > 0;
 }
 
 /* Energy, stress and tangent of the least energy by F; false where there is none. */
