@@ -47,7 +47,7 @@ enum status axi_model_number(struct axi_model *m, int node, int component, struc
   }
   place->base = lead->base;
   place->plus = ahead;
-  m->elongation |= place->plus;
+  m->elongation |= ahead > 0;
   return STATUS_OK;
 }
 
@@ -84,22 +84,15 @@ static signed char join(struct axi_clique *c, int dof) {
   return (signed char)c->count++;
 }
 
-void axi_clique_init(const struct axi_model *m, const int *node, int count, struct axi_clique *c) {
-  *c = (struct axi_clique){.locals = 2 * count};
-  for (int i = 0; i < c->locals; i++) {
-    c->place[i] = *axi_model_place(m, node[i / 2], i % 2);
-  }
-  axi_clique_join(m, c);
-}
-
 void axi_clique_join(const struct axi_model *m, struct axi_clique *c) {
   int bases = 0;
   c->elongation = -1;
   c->plain = true;
+  c->count = 0;
   for (int i = 0; i < c->locals; i++) {
     bases += c->place[i].base >= 0;
     c->at[i] = c->place[i].base < 0 ? -1 : join(c, c->place[i].base);
-    c->plain &= !c->place[i].plus;
+    c->plain &= c->place[i].plus == 0;
   }
   c->plain &= c->count == bases;
   if (c->plain) {
@@ -110,10 +103,18 @@ void axi_clique_join(const struct axi_model *m, struct axi_clique *c) {
     return;
   }
   for (int i = 0; i < c->locals; i++) {
-    if (c->place[i].plus) {
+    if (c->place[i].plus != 0) {
       c->elongation = join(c, m->size - 1);
     }
   }
+}
+
+void axi_clique_init(const struct axi_model *m, const int *node, int count, struct axi_clique *c) {
+  *c = (struct axi_clique){.locals = 2 * count};
+  for (int i = 0; i < c->locals; i++) {
+    c->place[i] = *axi_model_place(m, node[i / 2], i % 2);
+  }
+  axi_clique_join(m, c);
 }
 
 static enum status make_cliques(struct axi_model *m, struct error *error) {
@@ -144,6 +145,21 @@ static enum status make_cliques(struct axi_model *m, struct error *error) {
   return STATUS_OK;
 }
 
+static enum status make_contact(struct axi_model *m, struct error *error) {
+  enum status status = axi_contact_create(m->mesh, m->options.contact_stiffness,
+                                          m->options.contact_offset, &m->contact, error);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  size_t bytes = sizeof *m->first_partners * (size_t)(m->contact->edge_count + 1);
+  m->first_partners = malloc(bytes);
+  if (!m->first_partners) {
+    return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the contact");
+  }
+  memset(m->first_partners, -1, bytes);
+  return STATUS_OK;
+}
+
 /* ---- geometry ---------------------------------------------------------------------------- */
 
 static enum status measure(struct axi_model *m, struct error *error) {
@@ -168,7 +184,7 @@ static enum status measure(struct axi_model *m, struct error *error) {
       total += p->weight;
       for (int i = 0; i < AXI_DOFS; i++) {
         const struct axi_place *place = axi_model_place(m, node[i / 2], i % 2);
-        int dof = place->base >= 0 ? place->base : place->plus ? m->size - 1 : -1;
+        int dof = place->base >= 0 ? place->base : place->plus > 0 ? m->size - 1 : -1;
         if (dof >= 0) {
           m->weight[dof] += p->weight * p->n[i / 2];
         }
@@ -187,7 +203,8 @@ static enum status measure(struct axi_model *m, struct error *error) {
 static bool reserve(struct axi_model *m) {
   const struct axi_mesh *mesh = m->mesh;
   size_t nodes = (size_t)mesh->node_count, dofs = 2 * nodes + 1;
-  m->clique_count = mesh->element_count + mesh->inner_count;
+  m->fixed_count = mesh->element_count + mesh->inner_count;
+  m->clique_count = m->clique_capacity = m->fixed_count;
   size_t cliques = (size_t)m->clique_count;
   m->geometry = malloc(((size_t)mesh->element_count + 1) * sizeof *m->geometry);
   m->place = calloc(2 * nodes + 1, sizeof *m->place);
@@ -229,6 +246,9 @@ enum status axi_model_create(const struct axi_mesh *mesh, const struct axi_model
   if (status == STATUS_OK) {
     status = make_cliques(m, error);
   }
+  if (status == STATUS_OK && m->options.contact) {
+    status = make_contact(m, error);
+  }
   if (status != STATUS_OK) {
     axi_model_destroy(m);
     return status;
@@ -251,6 +271,10 @@ void axi_model_destroy(struct axi_model *m) {
   free(m->clique);
   free((void *)m->value);
   free(m->room);
+  axi_contact_destroy(m->contact);
+  free(m->partners);
+  free(m->first_partners);
+  free(m->contact_room);
   free(m->u);
   free(m->q);
   free(m->force);
@@ -291,7 +315,7 @@ void axi_model_expand(const struct axi_model *model, const double *x, double *u)
   }
   for (int i = 0; !model->shell && i < 2 * model->mesh->node_count; i++) {
     const struct axi_place *p = &model->place[i];
-    u[i] = (p->base >= 0 ? x[p->base] : 0) + (p->plus ? h : 0);
+    u[i] = (p->base >= 0 ? x[p->base] : 0) + p->plus * h;
   }
 }
 
@@ -302,13 +326,13 @@ void axi_model_gather(const struct axi_model *model, const double *u, double *x)
   }
   for (int i = 0; i < 2 * model->mesh->node_count; i++) {
     const struct axi_place *p = &model->place[i];
-    if (p->base >= 0 && !p->plus) {
+    if (p->base >= 0 && p->plus == 0) {
       x[p->base] = u[i];
     }
   }
   for (int i = 0; i < 2 * model->mesh->node_count; i++) {
     const struct axi_place *p = &model->place[i];
-    if (p->plus) {
+    if (p->plus > 0) {
       x[model->size - 1] = u[i] - (p->base >= 0 ? x[p->base] : 0);
     }
   }

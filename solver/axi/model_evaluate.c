@@ -8,36 +8,49 @@ static int packed_index(int n, int i, int j) {
   return i <= j ? i * n - i * (i - 1) / 2 + j - i : j * n - j * (j - 1) / 2 + i - j;
 }
 
-/* Adds local forces to the forces on the unknowns. */
-static void add_force(const struct axi_model *m, const struct axi_clique *c, const double *local,
-                      double *force) {
+void axi_clique_add_force(const struct axi_model *m, const struct axi_clique *c,
+                          const double *local, double *force) {
   for (int i = 0; i < c->locals; i++) {
     if (c->place[i].base >= 0) {
       force[c->place[i].base] += local[i];
     }
-    if (c->place[i].plus) {
-      force[m->size - 1] += local[i];
+    if (c->place[i].plus != 0) {
+      force[m->size - 1] += c->place[i].plus * local[i];
     }
   }
 }
 
-/* The matrix of the components becomes that of the clique's unknowns. */
-static void condense(struct axi_clique *c, const double *local) {
-  memset(c->value, 0, sizeof *c->value * (size_t)(c->count * (c->count + 1) / 2));
+static int packed_count(int n) {
+  return n * (n + 1) / 2;
+}
+
+/* With u = T x for the components, T^T K T: row i of T is 1 at its base and `plus` at h. */
+void axi_clique_add(struct axi_clique *c, const double *local) {
+  if (c->plain) {
+    for (int i = 0; i < packed_count(c->locals); i++) {
+      c->value[i] += local[i];
+    }
+    return;
+  }
   for (int i = 0; i < c->locals; i++) {
-    int to[2] = {c->at[i], c->place[i].plus ? c->elongation : -1};
+    const int row[2] = {c->at[i], c->elongation}, by[2] = {1, c->place[i].plus};
     for (int j = i; j < c->locals; j++, local++) {
-      int other[2] = {c->at[j], c->place[j].plus ? c->elongation : -1};
+      const int column[2] = {c->at[j], c->elongation}, other[2] = {1, c->place[j].plus};
       for (int k = 0; k < 4; k++) {
-        int a = to[k / 2], b = other[k % 2];
+        int a = row[k / 2], b = column[k % 2], times = by[k / 2] * other[k % 2];
         bool mirrored = i == j && k == 2;
-        if (a >= 0 && b >= 0 && !mirrored) {
-          /* An entry below the diagonal stands for its mirror image, too. */
-          c->value[packed_index(c->count, a, b)] += a == b && i != j ? 2 * *local : *local;
+        if (a >= 0 && b >= 0 && times != 0 && !mirrored) {
+          /* An entry off the diagonal stands for its mirror image, too. */
+          times *= a == b && i != j ? 2 : 1;
+          c->value[packed_index(c->count, a, b)] += times * *local;
         }
       }
     }
   }
+}
+
+static void clear(struct axi_clique *c) {
+  memset(c->value, 0, sizeof *c->value * (size_t)packed_count(c->count));
 }
 
 /* Over the displacements of the nodes, or the unknowns of a shell's rows. */
@@ -76,9 +89,10 @@ static enum status add_elements(struct axi_model *m, bool tangent, struct error 
       return error_set(error, STATUS_INVERTED, NULL, "element %d turned inside out", e);
     }
     m->energy += energy;
-    add_force(m, c, force, m->force);
+    axi_clique_add_force(m, c, force, m->force);
     if (tangent && !c->plain) {
-      condense(c, packed);
+      clear(c);
+      axi_clique_add(c, packed);
     }
   }
   return STATUS_OK;
@@ -89,16 +103,14 @@ static void add_volume(struct axi_model *m, double pressure, bool tangent) {
   for (int k = 0; k < mesh->inner_count; k++) {
     struct axi_clique *c = &m->clique[mesh->element_count + k];
     double gradient[SHELL_DOFS], packed[SHELL_PACKED];
-    int count = c->locals * (c->locals + 1) / 2;
     m->volume += evaluate_edge(m, k, gradient, tangent ? packed : NULL);
-    add_force(m, c, gradient, m->volume_gradient);
-    for (int i = 0; tangent && i < count; i++) {
+    axi_clique_add_force(m, c, gradient, m->volume_gradient);
+    for (int i = 0; tangent && i < packed_count(c->locals); i++) {
       packed[i] *= -pressure;
     }
-    if (tangent && c->plain) {
-      memcpy(c->value, packed, sizeof *packed * (size_t)count);
-    } else if (tangent) {
-      condense(c, packed);
+    if (tangent) {
+      clear(c);
+      axi_clique_add(c, packed);
     }
   }
 }
@@ -108,13 +120,17 @@ enum status axi_model_evaluate(struct axi_model *m, const double *x, double pres
   size_t bytes = sizeof *m->force * (size_t)m->size;
   memset(m->force, 0, bytes);
   memset(m->volume_gradient, 0, bytes);
-  m->energy = m->volume = 0;
+  m->energy = m->volume = m->contact_energy = 0;
   axi_model_expand(m, x, m->u);
   for (int row = 0; m->shell && row < m->mesh->node_count / m->options.row_nodes; row++) {
     axi_model_row(m, x, row, m->q + SHELL_ROW * row);
   }
   add_volume(m, pressure, tangent);
-  return add_elements(m, tangent, error);
+  enum status status = add_elements(m, tangent, error);
+  if (status == STATUS_OK && m->contact) {
+    status = axi_model_add_contact(m, x, tangent, error);
+  }
+  return status;
 }
 
 /* ---- factors ----------------------------------------------------------------------------- */
@@ -164,8 +180,8 @@ void axi_model_product(const struct axi_model *m, const double *v, double *produ
   memset(product, 0, sizeof *product * (size_t)m->size);
   for (int k = 0; k < m->clique_count; k++) {
     const struct axi_clique *c = &m->clique[k];
-    const double *a = c->value;
-    for (int i = 0; i < c->count; i++) {
+    const double *a = m->value[k];
+    for (int i = 0; a && i < c->count; i++) {
       int p = c->dof[i];
       for (int j = i; j < c->count; j++, a++) {
         int q = c->dof[j];

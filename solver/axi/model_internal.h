@@ -2,19 +2,21 @@
 #ifndef PNEULAB_AXI_MODEL_INTERNAL_H
 #define PNEULAB_AXI_MODEL_INTERNAL_H
 
+#include "solver/axi/contact.h"
 #include "solver/axi/model.h"
 #include "solver/axi/shell.h"
 #include "solver/fe/ldlt.h"
 
-/* A displacement component is x[base] (0 for -1), plus h when `plus`. */
+/* A displacement component is x[base] (0 for -1) + plus h. */
 struct axi_place {
   int base;
-  bool plus;
+  int plus; /* 0 or 1; of an edge one period away also -1 or 2 */
 };
 
 enum { CLIQUE_LOCALS = AXI_DOFS, CLIQUE_DOFS = AXI_DOFS + 1 };
 
-/* Unknowns that a small matrix couples: that of an element, of an edge under pressure. */
+/* Unknowns that a small matrix couples: that of an element, of an edge under pressure, of two edges
+ * in contact. */
 struct axi_clique {
   int locals; /* displacement components of its nodes */
   struct axi_place place[CLIQUE_LOCALS];
@@ -23,7 +25,14 @@ struct axi_clique {
   signed char at[CLIQUE_LOCALS]; /* place of the component's base in dof, -1 */
   signed char elongation;        /* place of h in dof, -1 */
   bool plain;                    /* one unknown or none a component, no two the same, no h */
-  double *value;                 /* packed upper triangle over dof; of the model's room */
+  double *value;                 /* packed upper triangle over dof; of the model's rooms */
+};
+
+enum { CONTACT_CLIQUE = (TOUCH_DOFS + 1) * (TOUCH_DOFS + 2) / 2 };
+
+/* Edges that may touch, see struct axi_touch; `next` is the next one of the same slave, -1. */
+struct axi_partners {
+  int slave, master, shift, next;
 };
 
 struct axi_model {
@@ -37,18 +46,24 @@ struct axi_model {
   int *node_of;     /* size: for the ordering */
   double *weight;   /* size: metric whose square is the mean square displacement of the body */
   double length;    /* largest extent of the meridian, m */
-  int clique_count; /* elements, inner edges */
+  int fixed_count;  /* cliques of elements, of inner edges */
+  int clique_count; /* and of partners in contact behind them */
+  int clique_capacity;
   struct axi_clique *clique;
-  const double **value;   /* clique_count */
-  double *room;           /* of the cliques' values */
-  struct ldlt *factor[2]; /* with h free, with h held; made when first needed */
+  const double **value;          /* clique_count; NULL where partners do not touch */
+  double *room;                  /* of the fixed cliques' values */
+  struct axi_contact *contact;   /* NULL without */
+  struct axi_partners *partners; /* clique_count - fixed_count */
+  int *first_partners;           /* of every edge, -1 */
+  double *contact_room;          /* CONTACT_CLIQUE doubles for each of the partners */
+  struct ldlt *factor[2];        /* with h free, with h held; made when first needed */
   /* Of the last evaluation: */
   double *u;               /* 2 node + i */
   double *q;               /* 3 row + i, of a shell */
   double *force;           /* size: dW/dx */
   double *volume_gradient; /* size: dV/dx */
   double *column;          /* size: scratch */
-  double volume, energy;
+  double volume, energy, contact_energy;
 };
 
 /* Displacement components of `count` nodes in a clique's order. */
@@ -70,8 +85,20 @@ void axi_clique_init_rows(const struct axi_model *model, int row, struct axi_cli
 void axi_model_row(const struct axi_model *model, const double *x, int row, double q[SHELL_ROW]);
 void axi_model_gather_rows(const struct axi_model *model, const double *u, double *x);
 
-/* W, V, dW/dx and dV/dx at x; with `tangent` also the cliques of d2W/dx2 - pressure d2V/dx2.
- * STATUS_INVERTED. */
+/* Adds local forces to the forces on the unknowns. */
+void axi_clique_add_force(const struct axi_model *model, const struct axi_clique *clique,
+                          const double *local, double *force);
+
+/* Adds a matrix of the components, packed by rows, to the clique's values. */
+void axi_clique_add(struct axi_clique *clique, const double *local);
+
+/* Adds the contact to energy, forces and, with `tangent`, to the cliques: partners that were never
+ * seen join them, and the factors are made anew. STATUS_NO_MEMORY. */
+enum status axi_model_add_contact(struct axi_model *model, const double *x, bool tangent,
+                                  struct error *error);
+
+/* W, V, dW/dx and dV/dx at x, W with the contact; with `tangent` also the cliques of d2W/dx2 -
+ * pressure d2V/dx2. STATUS_INVERTED. */
 enum status axi_model_evaluate(struct axi_model *model, const double *x, double pressure,
                                bool tangent, struct error *error);
 

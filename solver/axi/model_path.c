@@ -138,6 +138,9 @@ static enum status fill(struct problem *p, const double *x, double lambda, int n
   }
   s->volume = m->volume;
   s->energy = m->energy;
+  s->contact_energy = m->contact_energy;
+  s->touching = m->contact && m->contact->touch_count > 0;
+  s->contact_overlap = s->touching ? fmax(0, -m->contact->min_gap) : 0;
   return status;
 }
 
@@ -259,7 +262,8 @@ enum status axi_evaluate(struct axi_model *model, const double *x, const struct 
     return status;
   }
   int h = model->elongation ? model->size - 1 : -1;
-  *potential = model->energy - load->pressure * model->volume - (h >= 0 ? load->force * x[h] : 0);
+  *potential = model->energy + model->contact_energy - load->pressure * model->volume -
+               (h >= 0 ? load->force * x[h] : 0);
   for (int i = 0; residual && i < model->size; i++) {
     residual[i] =
         model->force[i] - load->pressure * model->volume_gradient[i] - (i == h ? load->force : 0);

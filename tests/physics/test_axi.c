@@ -1,6 +1,5 @@
 /* Bodies of revolution: derivatives, closed solutions, energy balance, limit points. */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "solver/verify/revolution.h"
