@@ -3,6 +3,7 @@
 #include "solver/base/clock.h"
 #include "solver/estimate.h"
 #include "solver/fe/warm.h"
+#include "solver/identify/identify_job.h"
 #include "solver/material/curve_job.h"
 #include "solver/material/fit_job.h"
 #include "solver/mesh/actuator.h"
@@ -149,6 +150,9 @@ static enum status run_other(const struct job_spec *spec, const struct run_optio
   }
   if (spec->kind == JOB_MATERIAL_CURVE) {
     return curve_job(spec, document, error);
+  }
+  if (spec->kind == JOB_IDENTIFY) {
+    return identify_job(spec, options->cancelled, document, ending, error);
   }
   if (spec->kind == JOB_HLPV) {
     struct result_hlpv_options hlpv = {.events = options->events, .cancelled = options->cancelled};

@@ -8,7 +8,7 @@
 enum {
   TABLE_ROWS_MAX = 10000,
   TABLE_FIELDS_MAX = 256, /* columns that a text may have */
-  TABLE_WANTED_MAX = 4    /* columns that are read of it */
+  TABLE_WANTED_MAX = 5    /* columns that are read of it */
 };
 
 /* A column to be read. */

@@ -12,7 +12,7 @@
 
 /* A place where a job may name a file. */
 struct slot {
-  const char *group; /* member of the document that holds the key, or NULL */
+  const char *group; /* member of the document that holds the key, or a list of such; or NULL */
   const char *key;
   bool table; /* a table of data, otherwise a document */
 };
@@ -20,6 +20,7 @@ struct slot {
 static const struct slot slots[] = {{NULL, "data", true},
                                     {"measured", "data", true},
                                     {"input", "data", true},
+                                    {"tables", "data", true},
                                     {NULL, "base", false}};
 
 enum { SLOTS = sizeof slots / sizeof *slots, EMBED_LEVELS = 2 };
@@ -218,6 +219,22 @@ static enum status look_at(struct embedding *embedding, json_t *parent, const st
   return status;
 }
 
+static enum status look_at_each(struct embedding *embedding, json_t *list, const struct slot *slot,
+                                const char *folder, int level) {
+  size_t index;
+  json_t *parent;
+  enum status status = STATUS_OK;
+  json_array_foreach(list, index, parent) {
+    size_t mark = json_pointer_index(&embedding->pointer, index);
+    status = look_at(embedding, parent, slot, folder, level);
+    json_pointer_pop(&embedding->pointer, mark);
+    if (status != STATUS_OK) {
+      break;
+    }
+  }
+  return status;
+}
+
 /* A base has no base, so the walk ends below it, whatever the files name. */
 static enum status walk(struct embedding *embedding, json_t *document, const char *folder,
                         int level) {
@@ -226,7 +243,8 @@ static enum status walk(struct embedding *embedding, json_t *document, const cha
     const char *group = slots[i].group;
     json_t *parent = group ? json_object_get(document, group) : document;
     size_t mark = group ? json_pointer_key(&embedding->pointer, group) : 0;
-    status = look_at(embedding, parent, &slots[i], folder, level);
+    status = json_is_array(parent) ? look_at_each(embedding, parent, &slots[i], folder, level)
+                                   : look_at(embedding, parent, &slots[i], folder, level);
     if (group) {
       json_pointer_pop(&embedding->pointer, mark);
     }

@@ -102,6 +102,10 @@ enum status reader_set_point(const struct reader *reader, const json_t *value, c
 /* Fills name, timeout and snap of the job, as reader_hlpv does. Also STATUS_GEOMETRY. */
 enum status reader_snap(const struct reader *reader, const json_t *document, struct job_spec *job);
 
+/* As reader_hlpv, for name, timeout and identify; checks the data. */
+enum status reader_identify(const struct reader *reader, const json_t *document,
+                            struct job_spec *job);
+
 struct hlpv_mode;
 
 /* Fills the stiffness of a mode, and with a slope its rest, from the states of rest in `value`, at

@@ -7,6 +7,7 @@
 #include "solver/base/text.h"
 #include "solver/job/embed.h"
 #include "solver/job/hlpv.h"
+#include "solver/job/identify.h"
 #include "solver/job/json.h"
 #include "solver/job/reader.h"
 #include "solver/job/schema.h"
@@ -255,13 +256,14 @@ static enum status read_kind(const struct job_reader *job_reader, const struct r
          : strcmp(kind, "fit-material") == 0   ? reader_fit(reader, document, spec)
          : strcmp(kind, "material-curve") == 0 ? reader_material_curve(reader, document, spec)
          : strcmp(kind, "hlpv") == 0           ? reader_hlpv(reader, document, spec)
+         : strcmp(kind, "identify") == 0       ? reader_identify(reader, document, spec)
          : strcmp(kind, "snap") == 0           ? reader_snap(reader, document, spec)
                                                : read_response(reader, document, spec);
 }
 
 /* Whether the spec alone does not say everything about the job. */
 static bool keeps_document(const struct job_spec *spec) {
-  return spec->kind == JOB_STUDY || spec->kind == JOB_FIT_MATERIAL ||
+  return spec->kind == JOB_STUDY || spec->kind == JOB_FIT_MATERIAL || spec->kind == JOB_IDENTIFY ||
          spec->measured.metric[0] != '\0';
 }
 
@@ -316,6 +318,7 @@ enum status job_reader_read(const struct job_reader *reader, const char *text, s
 void job_spec_release(struct job_spec *spec) {
   json_decref(spec->document);
   hlpv_spec_destroy(spec->hlpv);
+  free(spec->identify);
   free(spec->snap);
   *spec = (struct job_spec){.kind = JOB_RESPONSE};
 }

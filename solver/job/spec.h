@@ -14,6 +14,7 @@ enum job_kind {
   JOB_FIT_MATERIAL,
   JOB_MATERIAL_CURVE,
   JOB_HLPV,
+  JOB_IDENTIFY,
   JOB_SNAP
 };
 
@@ -231,11 +232,15 @@ struct material_curve_spec {
 /* A model with guards and its input: solver/job/hlpv.h. */
 struct hlpv_spec;
 
+/* What an identification asks for: solver/job/identify.h. */
+struct identify_spec;
+
 /* A bistable bellows: solver/job/snap.h. */
 struct snap_spec;
 
 /* Only the members of its kind are filled: of a verify job name, verify, timeout and hash; of a
- * study name, timeout, hash and document; of a fit name, fit, timeout, hash and document; of a
+ * study name, timeout, hash and document; of a fit name, fit, timeout, hash and document, and so of an
+ * identification with identify; of a
  * material curve name, material, curve and hash; of an hlpv job name, hlpv, timeout and hash; of a
  * snap job name, snap, timeout and hash. */
 struct job_spec {
@@ -255,6 +260,7 @@ struct job_spec {
   struct fit_spec fit;
   struct material_curve_spec curve;
   struct hlpv_spec *hlpv; /* of an hlpv job, else NULL; owned and borrowed as document */
+  struct identify_spec *identify; /* likewise of an identify job */
   struct snap_spec *snap; /* of a snap job, else NULL; likewise */
   bool contact;
   struct plane_spec plane[PLANES_MAX];

@@ -1,0 +1,13 @@
+/* Starting values of an identification, from the data alone. */
+#ifndef PNEULAB_IDENTIFY_START_H
+#define PNEULAB_IDENTIFY_START_H
+
+#include "solver/identify/identification.h"
+
+/* Fills the values of all points and what they share: alpha and beta by regression of the pressure
+ * on its integral, stiffness and rest by regression of the elongation on the pressure, damping (and
+ * mass or gamma) as the best of a few damping ratios (and frequencies). STATUS_OK, or the failures
+ * of point_evaluate. */
+enum status start_values(struct identification *id, struct error *error);
+
+#endif
