@@ -12,6 +12,7 @@
 #include "solver/post/result_hlpv.h"
 #include "solver/post/result_measured.h"
 #include "solver/post/result_sensitivity.h"
+#include "solver/snap/result_snap.h"
 #include "solver/verify/verify.h"
 
 /* Everything one run owns. */
@@ -159,7 +160,8 @@ static enum status run_other(const struct job_spec *spec, const struct run_optio
     return result_hlpv(spec, &hlpv, document, ending, error);
   }
   if (spec->kind == JOB_SNAP) {
-    return error_set(error, STATUS_INVALID, "/kind", "this build checks snap jobs only");
+    struct result_snap_options snap = {options->events, options->cancelled};
+    return result_snap(spec, &snap, document, ending, error);
   }
   struct verify_options verify = {options->events, options->cancelled};
   return verify_job(spec, &verify, document, ending, error);

@@ -3,8 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "solver/snap/meridian.h"
-
 /* Elements along a part: limits for bodies of odd proportions. */
 enum { CELLS_MIN = 2, CELLS_MAX = 60 };
 
@@ -32,8 +30,8 @@ static int cells(const struct snap_spec *spec, const struct bellows_fineness *fi
   return (int)fmin(fmax(wanted, CELLS_MIN), CELLS_MAX);
 }
 
-/* Distance along the part, as a share of it, of the boundary at t = cell / cells. */
-static double graded(const struct meridian_part *part, double t) {
+double bellows_boundary(const struct meridian_part *part, int cells, int cell) {
+  double t = (double)cell / cells;
   if (part->edge[0] && part->edge[1]) {
     return t - grading * sin(2.0 * M_PI * t) / (2.0 * M_PI);
   }
@@ -69,17 +67,16 @@ static void place_row(struct bellows *b, const struct snap_spec *spec,
   }
 }
 
-/* The rows of a part, whose first one is `row`; returns its last one. */
-static int place_part(struct bellows *b, const struct snap_spec *spec,
-                      const struct meridian_part *part, int count, int row) {
+/* The rows of a part of `count` elements, whose first one is `row`. */
+static void place_part(struct bellows *b, const struct snap_spec *spec,
+                       const struct meridian_part *part, int count, int row) {
   for (int k = 0; k < count; k++) {
-    double from = part->length * graded(part, (double)k / count);
-    double to = part->length * graded(part, (k + 1.0) / count);
+    double from = part->length * bellows_boundary(part, count, k);
+    double to = part->length * bellows_boundary(part, count, k + 1);
     place_row(b, spec, part, from, row + 2 * k);
     place_row(b, spec, part, 0.5 * (from + to), row + 2 * k + 1);
     place_row(b, spec, part, to, row + 2 * k + 2);
   }
-  return row + 2 * count;
 }
 
 static void add_sheet(struct bellows *b, const struct meridian_part *part, int from, int to) {
@@ -141,19 +138,18 @@ static void hold_ends(struct bellows *b, enum snap_ends ends) {
 
 enum status bellows_create(const struct snap_spec *spec, const struct bellows_fineness *fineness,
                            struct bellows *b, struct error *error) {
-  struct meridian m;
-  int count[MERIDIAN_PARTS_MAX], lines = 0, layers = 2 * fineness->silicone + fineness->pet;
+  int layers = 2 * fineness->silicone + fineness->pet;
   memset(b, 0, sizeof *b);
-  meridian_build(spec, &m);
-  for (int i = 0; i < m.count; i++) {
-    count[i] = cells(spec, fineness, &m.part[i]);
-    lines += count[i];
+  struct meridian *m = &b->line;
+  meridian_build(spec, m);
+  for (int i = 0; i < m->count; i++) {
+    b->row[i + 1] = b->row[i] + 2 * cells(spec, fineness, &m->part[i]);
   }
+  int lines = b->row[m->count] / 2;
   b->row_count = 2 * lines + 1;
   b->column_count = 2 * layers + 1;
   b->core_from = 2 * fineness->silicone;
   b->core_to = b->core_from + 2 * fineness->pet;
-  b->length = m.length;
   enum status status = axi_mesh_create(b->row_count * b->column_count, lines * layers, lines, lines,
                                        &b->mesh, error);
   if (status != STATUS_OK) {
@@ -162,11 +158,10 @@ enum status bellows_create(const struct snap_spec *spec, const struct bellows_fi
   b->mesh.region_count = BELLOWS_REGIONS;
   b->mesh.region[BELLOWS_SILICONE] = spec->silicone;
   b->mesh.region[BELLOWS_PET] = spec->pet;
-  for (int i = 0, row = 0; i < m.count; i++) {
-    int end = place_part(b, spec, &m.part[i], count[i], row);
-    connect_part(b, &m.part[i], row, end);
-    add_sheet(b, &m.part[i], row, end);
-    row = end;
+  for (int i = 0; i < m->count; i++) {
+    place_part(b, spec, &m->part[i], (b->row[i + 1] - b->row[i]) / 2, b->row[i]);
+    connect_part(b, &m->part[i], b->row[i], b->row[i + 1]);
+    add_sheet(b, &m->part[i], b->row[i], b->row[i + 1]);
   }
   hold_ends(b, spec->ends);
   return STATUS_OK;

@@ -8,6 +8,7 @@
 
 #include "solver/axi/mesh.h"
 #include "solver/job/snap.h"
+#include "solver/snap/meridian.h"
 
 enum { BELLOWS_SILICONE, BELLOWS_PET, BELLOWS_REGIONS };
 
@@ -27,7 +28,8 @@ struct bellows {
   int core_from, core_to; /* columns of the faces of the PET */
   int sheet_count;
   struct bellows_sheet sheet[BELLOWS_SHEETS_MAX];
-  double length; /* of the body along the axis as moulded, m */
+  struct meridian line;
+  int row[MERIDIAN_PARTS_MAX + 1]; /* where the parts of the line start and end */
 };
 
 /* Elements through a layer of silicone and through the PET, and their length along the wall
@@ -46,6 +48,9 @@ void bellows_release(struct bellows *bellows);
 
 /* Number of a node. */
 int bellows_node(const struct bellows *bellows, int row, int column);
+
+/* Where, as a share of the part, its element `cell` of `cells` starts. */
+double bellows_boundary(const struct meridian_part *part, int cells, int cell);
 
 /* Angle of the snapping shell of a pair to the base plane, rad, from end to end, at the
  * displacements u (2 node + i; NULL: as moulded): positive as moulded, negative inverted. */

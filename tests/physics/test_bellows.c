@@ -4,7 +4,6 @@
 
 #include "solver/axi/element.h"
 #include "solver/snap/bellows.h"
-#include "solver/snap/meridian.h"
 #include "tests/physics/snap_case.h"
 #include "tests/unit/suite.h"
 
@@ -140,8 +139,8 @@ START_TEST(the_cavity_is_on_the_right_of_the_inner_edges) {
       outer[k] += b.mesh.position[2 * o[1] + k] - b.mesh.position[2 * o[0] + k];
     }
   }
-  ck_assert_double_eq_tol(inner[1], -b.length, 1e-12);
-  ck_assert_double_eq_tol(outer[1], b.length, 1e-12);
+  ck_assert_double_eq_tol(inner[1], -b.line.length, 1e-12);
+  ck_assert_double_eq_tol(outer[1], b.line.length, 1e-12);
   ck_assert_double_eq_tol(inner[0], 0.0, 1e-12);
   bellows_release(&b);
   job_spec_release(&job);
@@ -167,7 +166,7 @@ START_TEST(crests_angles_and_lengths_are_those_of_the_job) {
                               1e-12);
     }
     ck_assert_double_eq_tol(
-        b.length,
+        b.line.length,
         b.mesh.position[2 * bellows_node(&b, b.row_count - 1, b.core_from) + 1] -
             b.mesh.position[2 * bellows_node(&b, 0, b.core_from) + 1],
         1e-12);
@@ -187,7 +186,7 @@ START_TEST(a_pair_is_as_long_as_its_parts) {
   double q = 3e-3 / (85.0 * deg);
   double length = 5e-3 * sin(40.0 * deg) + s->pair[0].supporting_slant * sin(55.0 * deg) +
                   2.0 * q * (cos(40.0 * deg) + cos(55.0 * deg));
-  ck_assert_double_eq_tol(b.length, length, 1e-12);
+  ck_assert_double_eq_tol(b.line.length, length, 1e-12);
   bellows_release(&b);
   job_spec_release(&job);
 }
@@ -242,7 +241,7 @@ START_TEST(ends_are_held_as_asked) {
       ck_assert_int_eq(b.mesh.hold[2 * n], AXI_TIED);
       ck_assert_double_eq_tol(b.mesh.position[2 * n], b.mesh.position[2 * master], 1e-15);
       ck_assert_double_eq_tol(b.mesh.position[2 * n + 1],
-                              b.mesh.position[2 * master + 1] + b.length, 1e-15);
+                              b.mesh.position[2 * master + 1] + b.line.length, 1e-15);
     }
   }
   ck_assert_int_eq(fixed, 1);
@@ -254,7 +253,7 @@ START_TEST(ends_are_held_as_asked) {
   for (int j = 0; j < b.column_count; j++) {
     int low = bellows_node(&b, 0, j), high = bellows_node(&b, last, j);
     ck_assert_double_eq_tol(b.mesh.position[2 * low + 1], 0.0, 1e-15);
-    ck_assert_double_eq_tol(b.mesh.position[2 * high + 1], b.length, 1e-15);
+    ck_assert_double_eq_tol(b.mesh.position[2 * high + 1], b.line.length, 1e-15);
     ck_assert_int_eq(b.mesh.hold[2 * low + 1], AXI_FIXED);
     ck_assert_int_eq(b.mesh.hold[2 * high + 1], AXI_PLATE);
   }

@@ -1,0 +1,202 @@
+/* A bellows of nine-node elements through silicone and PET. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "solver/axi/harmonic.h"
+#include "solver/fe/hyperelastic.h"
+#include "solver/snap/body.h"
+#include "solver/snap/folded.h"
+
+struct solid {
+  const struct snap_spec *spec;
+  struct bellows bellows;
+  struct axi_model *model;
+  struct harmonic *harmonic; /* made when first asked for */
+};
+
+static struct continuation_options solid_options(const void *self) {
+  const struct solid *solid = self;
+  return axi_defaults(solid->model);
+}
+
+static enum status solid_follow(void *self, const struct axi_ramp *ramp,
+                                const struct continuation_options *options, int direction,
+                                const double *along, axi_visit *visit, void *visit_context,
+                                struct axi_state *state, struct error *error) {
+  struct solid *solid = self;
+  return axi_follow(solid->model, ramp, options, direction, along, visit, visit_context, state,
+                    error);
+}
+
+static enum status solid_equilibrium(void *self, const struct axi_load *load, bool held,
+                                     const struct continuation_options *options,
+                                     struct axi_state *state, struct error *error) {
+  struct solid *solid = self;
+  return axi_equilibrium(solid->model, load, held, options, state, NULL, error);
+}
+
+static void solid_fold(void *self, struct axi_state *state) {
+  struct solid *solid = self;
+  folded_guess(solid->spec, &solid->bellows, 0, solid->spec->pair_count, state->u);
+  axi_model_gather(solid->model, state->u, state->x);
+}
+
+static int solid_inverted(const void *self, const double *u) {
+  const struct solid *solid = self;
+  return bellows_inverted(&solid->bellows, solid->spec->pair_count, u);
+}
+
+/* ---- strain ------------------------------------------------------------------------------- */
+
+/* Largest logarithm of a principal stretch, by its size, at a Gauss point. */
+static double point_strain(const struct axi_point *point, const double u[AXI_DOFS]) {
+  double f[9], c[9] = {0}, value[3], vector[9], strain = 0.0;
+  axi_deformation(point, u, f);
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) {
+      for (int k = 0; k < 3; k++) {
+        c[3 * i + j] += f[3 * k + i] * f[3 * k + j];
+      }
+    }
+  }
+  symmetric3_eigen(c, value, vector);
+  for (int i = 0; i < 3; i++) {
+    strain = fmax(strain, fabs(0.5 * log(value[i])));
+  }
+  return strain;
+}
+
+static double solid_pet_strain(const void *self, const double *u) {
+  const struct solid *solid = self;
+  const struct axi_mesh *mesh = &solid->bellows.mesh;
+  double strain = 0.0;
+  for (int e = 0; e < mesh->element_count; e++) {
+    if (mesh->element[e].region == BELLOWS_PET) {
+      const struct axi_geometry *geometry = axi_model_geometry(solid->model, e);
+      double local[AXI_DOFS];
+      axi_element_displacements(mesh, e, u, local);
+      for (int q = 0; q < AXI_POINTS; q++) {
+        strain = fmax(strain, point_strain(&geometry->point[q], local));
+      }
+    }
+  }
+  return strain;
+}
+
+/* ---- harmonics ---------------------------------------------------------------------------- */
+
+/* A row of pairs is free to shift sideways, a deformation of one wave without stiffness. Springs as
+ * weak as this, along one circle, decide the sign of its pivot. */
+static const double weak = 1e-4;
+
+static struct harmonic_touch soft_ring(const struct solid *solid) {
+  const struct snap_spec *spec = solid->spec;
+  return (struct harmonic_touch){
+      .count = 1,
+      .node = {bellows_node(&solid->bellows, 0, solid->bellows.core_from)},
+      .weight = {{1.0, 0.0}},
+      .stiffness = weak * material_shear_modulus(&spec->silicone) * spec->crest_radius};
+}
+
+static enum status solid_harmonics(void *self, const struct axi_state *state, int last, int *count,
+                                   struct error *error) {
+  struct solid *solid = self;
+  enum status status = STATUS_OK;
+  if (!solid->harmonic) {
+    status = harmonic_create(&solid->bellows.mesh, HARMONIC_GUIDED, &solid->harmonic, error);
+  }
+  struct harmonic_touch ring = soft_ring(solid);
+  struct harmonic_state base = {.u = state->u,
+                                .pressure = state->pressure,
+                                .touch = &ring,
+                                .touch_count = solid->spec->ends == SNAP_PERIODIC};
+  return status == STATUS_OK ? harmonic_negative(solid->harmonic, &base, 0, last, count, error)
+                             : status;
+}
+
+/* ---- outlines ----------------------------------------------------------------------------- */
+
+static void add_point(const struct bellows *b, const double *u, int row, int column,
+                      json_t *outline) {
+  int node = bellows_node(b, row, column);
+  const double *x = b->mesh.position + 2 * (size_t)node;
+  json_array_append_new(
+      outline, json_pack("[f, f]", 1e3 * (x[0] + u[2 * node]), 1e3 * (x[1] + u[2 * node + 1])));
+}
+
+/* Around the block of nodes between two rows and two columns. */
+static json_t *block_outline(const struct bellows *b, const double *u, int low, int high, int left,
+                             int right) {
+  json_t *outline = json_array();
+  for (int j = left; j < right; j++) {
+    add_point(b, u, low, j, outline);
+  }
+  for (int i = low; i < high; i++) {
+    add_point(b, u, i, right, outline);
+  }
+  for (int j = right; j > left; j--) {
+    add_point(b, u, high, j, outline);
+  }
+  for (int i = high; i > low; i--) {
+    add_point(b, u, i, left, outline);
+  }
+  return outline;
+}
+
+static json_t *solid_outlines(const void *self, const double *u) {
+  const struct solid *solid = self;
+  const struct bellows *b = &solid->bellows;
+  json_t *regions = json_array();
+  json_array_append_new(
+      regions, json_pack("{s:s, s:o}", "region", "silicone", "outline_mm",
+                         block_outline(b, u, 0, b->row_count - 1, 0, b->column_count - 1)));
+  for (int s = 0; s < b->sheet_count; s++) {
+    const struct bellows_sheet *sheet = &b->sheet[s];
+    json_array_append_new(
+        regions, json_pack("{s:s, s:o}", "region", "pet", "outline_mm",
+                           block_outline(b, u, sheet->from, sheet->to, b->core_from, b->core_to)));
+  }
+  return regions;
+}
+
+/* ---- the body ----------------------------------------------------------------------------- */
+
+static void solid_destroy(void *self) {
+  struct solid *solid = self;
+  harmonic_destroy(solid->harmonic);
+  axi_model_destroy(solid->model);
+  bellows_release(&solid->bellows);
+  free(solid);
+}
+
+enum status solid_body_create(const struct snap_spec *spec, struct snap_body *body,
+                              struct error *error) {
+  struct solid *solid = calloc(1, sizeof *solid);
+  *body = (struct snap_body){.self = solid,
+                             .options = solid_options,
+                             .follow = solid_follow,
+                             .equilibrium = solid_equilibrium,
+                             .fold = solid_fold,
+                             .inverted = solid_inverted,
+                             .pet_strain = solid_pet_strain,
+                             .harmonics = solid_harmonics,
+                             .outlines = solid_outlines,
+                             .destroy = solid_destroy};
+  if (!solid) {
+    return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the bellows");
+  }
+  solid->spec = spec;
+  struct bellows_fineness fineness = bellows_fineness(spec->accuracy);
+  struct axi_model_options options = {.contact = spec->contact};
+  enum status status = bellows_create(spec, &fineness, &solid->bellows, error);
+  if (status == STATUS_OK) {
+    status = axi_model_create(&solid->bellows.mesh, &options, &solid->model, error);
+  }
+  if (status == STATUS_OK) {
+    body->size = axi_model_size(solid->model);
+    body->values = 2 * solid->bellows.mesh.node_count;
+    body->length = solid->bellows.line.length;
+  }
+  return status;
+}
