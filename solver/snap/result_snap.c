@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "solver/base/clock.h"
-#include "solver/snap/document.h"
+#include "solver/snap/snap_document.h"
 
 static json_t *statistics_object(const struct snap_study *study, double wall_s, double cpu_s) {
   return json_pack("{s:i, s:I, s:f, s:f, s:f}", "unknowns", study->body.size, "states",
@@ -20,11 +20,12 @@ static json_t *document_of(const struct job_spec *job, const struct snap_study *
       "s:{s:s, s:s}}",
       "status", good ? "succeeded" : "diverged", "reason", good ? "" : status_word(ending),
       "message", good ? "" : end->message, "kind", "snap", "name", job->name, "metrics",
-      document_metrics(study), "samples", "paths", document_paths(study), "events",
-      document_events(study), "held", document_held(study), "shapes", document_shapes(study), "law",
-      document_law(study), "harmonics", document_harmonics(study), "warnings",
-      document_warnings(study), "artifacts", "statistics", statistics_object(study, wall_s, cpu_s),
-      "provenance", "version", PNEULAB_VERSION, "spec_hash", job->hash);
+      snap_document_metrics(study), "samples", "paths", snap_document_paths(study), "events",
+      snap_document_events(study), "held", snap_document_held(study), "shapes",
+      snap_document_shapes(study), "law", snap_document_law(study), "harmonics",
+      snap_document_harmonics(study), "warnings", snap_document_warnings(study), "artifacts",
+      "statistics", statistics_object(study, wall_s, cpu_s), "provenance", "version",
+      PNEULAB_VERSION, "spec_hash", job->hash);
 }
 
 static bool is_fatal(enum status status) {
@@ -72,7 +73,7 @@ enum status result_snap(const struct job_spec *job, const struct result_snap_opt
   }
   *document = document_of(job, &study, *ending, &end, clock_wall_s() - wall, clock_cpu_s() - cpu);
   if (*document && spec.calibrate.asked) {
-    json_object_set_new(*document, "calibration", document_calibration(&spec, &found));
+    json_object_set_new(*document, "calibration", snap_document_calibration(&spec, &found));
   }
   if (!*document) {
     status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the result document");

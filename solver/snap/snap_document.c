@@ -1,4 +1,4 @@
-#include "solver/snap/document.h"
+#include "solver/snap/snap_document.h"
 
 #include <math.h>
 #include <string.h>
@@ -19,7 +19,7 @@ static double rest_length(const struct snap_study *study) {
 
 /* ---- metrics ------------------------------------------------------------------------------ */
 
-json_t *document_metrics(const struct snap_study *study) {
+json_t *snap_document_metrics(const struct snap_study *study) {
   const struct snap_metrics *m = &study->metrics;
   double travel = -1e3 * m->compressed, rest = rest_length(study);
   json_t *o = json_object();
@@ -77,7 +77,7 @@ static json_t *points_array(const struct snap_study *study, const struct snap_pa
   return points;
 }
 
-json_t *document_paths(const struct snap_study *study) {
+json_t *snap_document_paths(const struct snap_study *study) {
   json_t *paths = json_array();
   for (int i = 0; i < study->path_count; i++) {
     const struct snap_path *path = &study->path[i];
@@ -87,7 +87,7 @@ json_t *document_paths(const struct snap_study *study) {
   return paths;
 }
 
-json_t *document_events(const struct snap_study *study) {
+json_t *snap_document_events(const struct snap_study *study) {
   static const char *const types[] = {[SNAP_LIMIT_POINT] = "limit point",
                                       [SNAP_STABLE_STATE] = "stable state",
                                       [SNAP_LOSS_OF_AXISYMMETRY] = "loss of axisymmetry",
@@ -108,7 +108,7 @@ json_t *document_events(const struct snap_study *study) {
   return events;
 }
 
-json_t *document_held(const struct snap_study *study) {
+json_t *snap_document_held(const struct snap_study *study) {
   json_t *held = json_array();
   for (int i = 0; i < study->held.count; i++) {
     const struct snap_point *p = &study->held.point[i];
@@ -118,7 +118,7 @@ json_t *document_held(const struct snap_study *study) {
   return held;
 }
 
-json_t *document_shapes(const struct snap_study *study) {
+json_t *snap_document_shapes(const struct snap_study *study) {
   static const char *const names[SNAP_MARKS] = {"natural",        "compressed", "at the trigger",
                                                 "after the snap", "stretched",  "at the release"};
   static const enum snap_mark order[SNAP_MARKS] = {SNAP_COMPRESSED, SNAP_TRIGGER, SNAP_SNAPPED,
@@ -138,7 +138,7 @@ json_t *document_shapes(const struct snap_study *study) {
   return shapes;
 }
 
-json_t *document_law(const struct snap_study *study) {
+json_t *snap_document_law(const struct snap_study *study) {
   json_t *law = json_array();
   for (int i = 0; i < study->law_count; i++) {
     const struct snap_path *path = &study->law[i];
@@ -156,7 +156,7 @@ json_t *document_law(const struct snap_study *study) {
   return law;
 }
 
-json_t *document_harmonics(const struct snap_study *study) {
+json_t *snap_document_harmonics(const struct snap_study *study) {
   json_t *harmonics = json_array();
   for (int i = 0; i < study->waves_count; i++) {
     const struct snap_waves *waves = &study->waves[i];
@@ -172,7 +172,7 @@ json_t *document_harmonics(const struct snap_study *study) {
   return harmonics;
 }
 
-json_t *document_warnings(const struct snap_study *study) {
+json_t *snap_document_warnings(const struct snap_study *study) {
   json_t *warnings = json_array();
   for (int i = 0; i < study->warning_count; i++) {
     json_array_append_new(warnings, json_string(study->warning[i]));
@@ -180,7 +180,8 @@ json_t *document_warnings(const struct snap_study *study) {
   return warnings;
 }
 
-json_t *document_calibration(const struct snap_spec *spec, const struct calibrate_result *result) {
+json_t *snap_document_calibration(const struct snap_spec *spec,
+                                  const struct calibrate_result *result) {
   const struct snap_calibrate *c = &spec->calibrate;
   double unit = strstr(c->metric, "_kPa") ? 1e3 : 1e-3;
   char key[40];
