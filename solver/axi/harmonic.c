@@ -5,18 +5,25 @@
 #include <string.h>
 #include "solver/axi/harmonic_internal.h"
 
+/* What touches in the state. */
+static enum status find_contact(const struct harmonic_state *state, struct error *error) {
+  return state->contact
+             ? axi_contact_evaluate(state->contact, state->u, state->elongation, true, error)
+             : STATUS_OK;
+}
+
 enum status harmonic_negative(struct harmonic *h, const struct harmonic_state *state, int first,
                               int last, int *count, struct error *error) {
-  enum status status = STATUS_OK;
+  struct harmonic_system own[HARMONIC_KINDS] = {{0}}, *s;
+  enum status status = find_contact(state, error);
   for (int n = first; n <= last && status == STATUS_OK; n++) {
-    struct harmonic_system own = {0}, *s;
     count[n - first] = 0;
-    status = harmonic_system_get(h, state, n, &own, &s, error);
+    status = harmonic_system_get(h, state, n, own, &s, error);
     if (status == STATUS_OK) {
       status = harmonic_system_factor(h, s, state, n, 0, &count[n - first], error);
     }
-    harmonic_system_release(&own);
   }
+  harmonic_systems_release(own);
   return status;
 }
 
@@ -111,12 +118,15 @@ static double mode_expand(const struct harmonic *h, const struct harmonic_system
 
 enum status harmonic_mode(struct harmonic *h, const struct harmonic_state *state, int n,
                           double *mode, double *stiffness, struct error *error) {
-  struct harmonic_system own = {0}, *s;
+  struct harmonic_system own[HARMONIC_KINDS] = {{0}}, *s;
   double *x = NULL, shift = 0, distance = 0, mass = 0;
   unsigned random = 1;
-  enum status status = harmonic_system_get(h, state, n, &own, &s, error);
+  enum status status = find_contact(state, error);
+  if (status == STATUS_OK) {
+    status = harmonic_system_get(h, state, n, own, &s, error);
+  }
   if (status != STATUS_OK) {
-    return status;
+    goto done;
   }
   x = malloc(sizeof *x * (2 * (size_t)s->dof_count + 1));
   if (!x) {
@@ -142,7 +152,7 @@ enum status harmonic_mode(struct harmonic *h, const struct harmonic_state *state
   }
 done:
   free(x);
-  harmonic_system_release(&own);
+  harmonic_systems_release(own);
   return status;
 }
 
@@ -198,9 +208,7 @@ void harmonic_destroy(struct harmonic *h) {
   if (!h) {
     return;
   }
-  for (int k = 0; k < HARMONIC_KINDS; k++) {
-    harmonic_system_release(&h->system[k]);
-  }
+  harmonic_systems_release(h->system);
   free(h->geometry);
   free(h->volume);
   free(h);

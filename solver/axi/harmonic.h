@@ -9,22 +9,25 @@
  * element's projection of kappa (J - 1) onto linear functions of the element's coordinates, times
  * cos n t for the perturbation, and is condensed. Pressure acts on the deformed inner surface
  * (follower), which has a potential because the volume is closed by plates, by the axis or by the
- * next pair of an endless row. */
+ * next pair of an endless row.
+ *
+ * Points in contact keep, at every angle, the stiffness that they have in the meridian; that the
+ * surfaces slide around the axis on each other, and turn, is left out, so that folds that touch are
+ * known a little worse than the rest. */
 #ifndef PNEULAB_AXI_HARMONIC_H
 #define PNEULAB_AXI_HARMONIC_H
 
-#include "solver/axi/mesh.h"
+#include "solver/axi/contact.h"
 
 enum { HARMONIC_PARTS = 3, HARMONIC_TOUCH_NODES = 6 };
 
-/* A point where the body touches itself in the base state: a spring on the gap, constant around
- * the axis. The gap changes by the sum of weight . (u_r, u_z) over the nodes. Friction and the
- * turning of the normal are left out, so that a touching fold is a little too soft. */
+/* A spring on a displacement that is a sum of weight . (u_r, u_z) over nodes of a circle, constant
+ * around the axis: a weak one takes a free motion away. */
 struct harmonic_touch {
   int count;
   int node[HARMONIC_TOUCH_NODES];
   double weight[HARMONIC_TOUCH_NODES][2];
-  double stiffness; /* of the whole ring, N/m: second derivative of the energy by the gap */
+  double stiffness; /* of the whole ring, N/m: second derivative of the energy by the sum */
 };
 
 /* What the upper plate (AXI_PLATE nodes that are held radially) may do for n = 1. For n = 0 it
@@ -39,6 +42,8 @@ struct harmonic_state {
   double pressure; /* Pa, of the cavity; the axial force is dead and does not enter */
   const struct harmonic_touch *touch;
   int touch_count;
+  struct axi_contact *contact; /* of the surfaces, NULL without; evaluated anew */
+  double elongation;           /* h of the state, for contact with the next period */
 };
 
 struct harmonic;
@@ -64,7 +69,7 @@ enum status harmonic_mode(struct harmonic *harmonic, const struct harmonic_state
                           double *mode, double *stiffness, struct error *error);
 
 /* *value = v K v (J per m2) of any perturbation v[node_count x 3], whatever the plates and ties
- * hold: twice the second-order change of W - p V. STATUS_INVERTED. */
+ * hold: twice the second-order change of W - p V, contact left out. STATUS_INVERTED. */
 enum status harmonic_quadratic(const struct harmonic *harmonic, const struct harmonic_state *state,
                                int n, const double *v, double *value, struct error *error);
 

@@ -178,3 +178,17 @@ void harmonic_touch(const struct harmonic_touch *touch, int n, double *form) {
     }
   }
 }
+
+void harmonic_contact(const struct axi_touch *touch, int n, double *form) {
+  int count = touch->master < 0 ? AXI_EDGE_NODES : TOUCH_NODES, width = HARMONIC_PARTS * count;
+  const double *packed = touch->packed;
+  memset(form, 0, sizeof *form * (size_t)width * (size_t)width);
+  for (int i = 0; i < TOUCH_DOFS; i++) {
+    for (int j = i; j < TOUCH_DOFS; j++, packed++) {
+      int row = HARMONIC_PARTS * (i / 2) + i % 2, column = HARMONIC_PARTS * (j / 2) + j % 2;
+      if (j < 2 * count) {
+        form[width * row + column] = form[width * column + row] = (n == 0 ? 1 : 0.5) * *packed;
+      }
+    }
+  }
+}

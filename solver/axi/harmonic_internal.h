@@ -25,6 +25,10 @@ void harmonic_edge(const struct axi_mesh *mesh, int edge, const double *u, doubl
 /* Second variation of the energy of a touching point: HARMONIC_PARTS x count unknowns. */
 void harmonic_touch(const struct harmonic_touch *touch, int n, double *form);
 
+/* Of a point in contact: (u_r, u_z, u_t) of the slave's nodes, then of the master's if there is
+ * one. */
+void harmonic_contact(const struct axi_touch *touch, int n, double *form);
+
 /* A component of a node is at most the sum of two unknowns: that of its master and h. */
 enum { HARMONIC_TERMS = 2, HARMONIC_KINDS = 3 };
 
@@ -36,6 +40,7 @@ struct harmonic_term {
 /* The unknowns for n = 0, n = 1 or n >= 2, and the factorisation of the form. */
 struct harmonic_system {
   int dof_count;
+  int elongation;             /* the unknown h, -1 */
   struct harmonic_term *term; /* node_count x HARMONIC_PARTS */
   int *node_of;               /* dof -> node; common unknowns of the plate belong to one more */
   int clique_count;
@@ -56,11 +61,11 @@ struct harmonic {
       system[HARMONIC_KINDS]; /* without touching points; made when first needed */
 };
 
-/* The system for n >= 0: the one kept by h, or made into *own (cleared before) when there are
- * touching points. STATUS_NO_MEMORY. */
+/* The system for n >= 0: the one kept by h, or made into own[] (cleared at first) when there are
+ * touching points; contact is evaluated before. STATUS_NO_MEMORY. */
 enum status harmonic_system_get(struct harmonic *h, const struct harmonic_state *state, int n,
-                                struct harmonic_system *own, struct harmonic_system **out,
-                                struct error *error);
+                                struct harmonic_system own[HARMONIC_KINDS],
+                                struct harmonic_system **out, struct error *error);
 
 /* Factorises the form of n less shift times the mass; *negative receives the negative pivots, 0
  * without unknowns. STATUS_INVERTED. */
@@ -68,7 +73,7 @@ enum status harmonic_system_factor(const struct harmonic *h, struct harmonic_sys
                                    const struct harmonic_state *state, int n, double shift,
                                    int *negative, struct error *error);
 
-void harmonic_system_release(struct harmonic_system *s);
+void harmonic_systems_release(struct harmonic_system system[HARMONIC_KINDS]);
 
 /* The error of an element of the base state that is turned inside out. */
 enum status harmonic_inverted(int element, struct error *error);

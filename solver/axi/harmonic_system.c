@@ -73,9 +73,10 @@ static enum status number_unknowns(const struct harmonic *h, int kind, struct ha
     plates += h->mesh->hold[2 * node + 1] == AXI_PLATE ||
               (kind == 0 && h->mesh->hold[2 * node + 1] == AXI_AHEAD);
   }
-  int plate = -1;
+  int plate = s->elongation = -1;
   if (plates > 0 && (kind == 0 || (kind == 1 && h->plate == HARMONIC_SWAYING))) {
     plate = s->dof_count++;
+    s->elongation = kind == 0 ? plate : -1;
     s->node_of[plate] = h->mesh->node_count;
   }
   for (int i = 0; i < count; i++) {
@@ -87,36 +88,66 @@ static enum status number_unknowns(const struct harmonic *h, int kind, struct ha
 
 /* ---- cliques: elements, edges of the cavity, touching points ---- */
 
-/* Nodes of a clique; returns their number. */
-static int clique_nodes(const struct harmonic *h, const struct harmonic_state *state, int clique,
-                        const int **node) {
+/* What a clique couples. */
+struct place {
+  int count, node[AXI_NODES];
+  int image; /* the last three nodes are meant this many periods higher */
+};
+
+static struct place clique_place(const struct harmonic *h, const struct harmonic_state *state,
+                                 int clique) {
   const struct axi_mesh *mesh = h->mesh;
+  struct place p = {.count = AXI_EDGE_NODES};
   if (clique < mesh->element_count) {
-    *node = mesh->element[clique].node;
-    return AXI_NODES;
+    p.count = AXI_NODES;
+    memcpy(p.node, mesh->element[clique].node, sizeof p.node);
+    return p;
   }
   clique -= mesh->element_count;
   if (clique < mesh->inner_count) {
-    *node = mesh->inner[clique].node;
-    return AXI_EDGE_NODES;
+    memcpy(p.node, mesh->inner[clique].node, sizeof mesh->inner[clique].node);
+    return p;
   }
-  *node = state->touch[clique - mesh->inner_count].node;
-  return state->touch[clique - mesh->inner_count].count;
+  clique -= mesh->inner_count;
+  if (clique < state->touch_count) {
+    p.count = state->touch[clique].count;
+    memcpy(p.node, state->touch[clique].node, sizeof state->touch[clique].node);
+    return p;
+  }
+  const struct axi_contact *contact = state->contact;
+  const struct axi_touch *touch = &contact->touch[clique - state->touch_count];
+  memcpy(p.node, contact->edge[touch->slave].node, sizeof contact->edge->node);
+  if (touch->master >= 0) {
+    p.count = TOUCH_NODES;
+    p.image = touch->shift;
+    memcpy(p.node + AXI_EDGE_NODES, contact->edge[touch->master].node, sizeof contact->edge->node);
+  }
+  return p;
+}
+
+/* Component i of a place, HARMONIC_PARTS to a node. */
+static struct harmonic_term term_of(const struct harmonic_system *s, const struct place *p, int i) {
+  int node = i / HARMONIC_PARTS, part = i % HARMONIC_PARTS;
+  struct harmonic_term t = s->term[HARMONIC_PARTS * p->node[node] + part];
+  if (p->image != 0 && part == 1 && node >= AXI_EDGE_NODES && s->elongation >= 0) {
+    t.factor[1] = p->image + (t.dof[1] == s->elongation ? t.factor[1] : 0);
+    t.dof[1] = s->elongation;
+  }
+  return t;
 }
 
 /* Distinct unknowns of a clique into dofs; returns their number. */
-static int clique_dofs(const struct harmonic_system *s, const int *node, int nodes, int *dofs) {
+static int clique_dofs(const struct harmonic_system *s, const struct place *p, int *dofs) {
   int count = 0;
-  for (int i = 0; i < HARMONIC_PARTS * nodes; i++) {
-    const struct harmonic_term *t =
-        &s->term[HARMONIC_PARTS * node[i / HARMONIC_PARTS] + i % HARMONIC_PARTS];
+  for (int i = 0; i < HARMONIC_PARTS * p->count; i++) {
+    struct harmonic_term t = term_of(s, p, i);
     for (int k = 0; k < HARMONIC_TERMS; k++) {
       int at = 0;
-      while (at < count && dofs[at] != t->dof[k]) {
+      while (at < count && dofs[at] != t.dof[k]) {
         at++;
       }
-      if (t->dof[k] >= 0 && at == count) {
-        dofs[count++] = t->dof[k];
+      if (t.dof[k] >= 0 && at == count) {
+        dofs[count++] = t.dof[k];
       }
     }
   }
@@ -126,8 +157,8 @@ static int clique_dofs(const struct harmonic_system *s, const int *node, int nod
 static enum status gather_cliques(const struct harmonic *h, const struct harmonic_state *state,
                                   struct harmonic_system *s) {
   int dofs[CLIQUE_MAX];
-  const int *node;
-  s->clique_count = h->mesh->element_count + h->mesh->inner_count + state->touch_count;
+  s->clique_count = h->mesh->element_count + h->mesh->inner_count + state->touch_count +
+                    (state->contact ? state->contact->touch_count : 0);
   s->start = malloc(sizeof *s->start * ((size_t)s->clique_count + 1));
   s->values = malloc(sizeof *s->values * ((size_t)s->clique_count + 1));
   if (!s->start || !s->values) {
@@ -136,7 +167,8 @@ static enum status gather_cliques(const struct harmonic *h, const struct harmoni
   size_t room = 0;
   s->start[0] = 0;
   for (int c = 0; c < s->clique_count; c++) {
-    int nodes = clique_nodes(h, state, c, &node), count = clique_dofs(s, node, nodes, dofs);
+    struct place place = clique_place(h, state, c);
+    int count = clique_dofs(s, &place, dofs);
     s->start[c + 1] = s->start[c] + count;
     room += (size_t)count * (size_t)(count + 1) / 2;
   }
@@ -147,8 +179,8 @@ static enum status gather_cliques(const struct harmonic *h, const struct harmoni
   }
   double *at = s->store;
   for (int c = 0; c < s->clique_count; c++) {
-    int nodes = clique_nodes(h, state, c, &node);
-    size_t count = (size_t)clique_dofs(s, node, nodes, s->dofs + s->start[c]);
+    struct place place = clique_place(h, state, c);
+    size_t count = (size_t)clique_dofs(s, &place, s->dofs + s->start[c]);
     s->values[c] = at;
     at += count * (count + 1) / 2;
   }
@@ -170,7 +202,7 @@ static void lump_mass(const struct harmonic *h, struct harmonic_system *s) {
   }
 }
 
-void harmonic_system_release(struct harmonic_system *s) {
+static void system_release(struct harmonic_system *s) {
   ldlt_destroy(s->ldlt);
   free(s->term);
   free(s->node_of);
@@ -206,7 +238,7 @@ static enum status system_create(const struct harmonic *h, const struct harmonic
     status = ldlt_create(&pattern, &s->ldlt, error);
   }
   if (status != STATUS_OK) {
-    harmonic_system_release(s);
+    system_release(s);
   }
   return status;
 }
@@ -214,16 +246,14 @@ static enum status system_create(const struct harmonic *h, const struct harmonic
 /* ---- values and factors ---- */
 
 /* Where the terms of a clique's components are among its unknowns; -1: nowhere. */
-static void locate_terms(const struct harmonic_system *s, int clique, const int *node, int width,
+static void locate_terms(const struct harmonic_system *s, int clique, const struct place *place,
                          struct harmonic_term *local) {
   const int *dofs = s->dofs + s->start[clique];
-  for (int i = 0; i < width; i++) {
-    const struct harmonic_term *t =
-        &s->term[HARMONIC_PARTS * node[i / HARMONIC_PARTS] + i % HARMONIC_PARTS];
-    local[i] = *t;
+  for (int i = 0; i < HARMONIC_PARTS * place->count; i++) {
+    local[i] = term_of(s, place, i);
     for (int k = 0; k < HARMONIC_TERMS; k++) {
-      int at = s->start[clique + 1] - s->start[clique] - 1;
-      while (at >= 0 && (t->dof[k] < 0 || dofs[at] != t->dof[k])) {
+      int at = s->start[clique + 1] - s->start[clique] - 1, dof = local[i].dof[k];
+      while (at >= 0 && (dof < 0 || dofs[at] != dof)) {
         at--;
       }
       local[i].dof[k] = at;
@@ -231,14 +261,14 @@ static void locate_terms(const struct harmonic_system *s, int clique, const int 
   }
 }
 
-/* Packs a form over the components of the nodes, width x width, into the clique's unknowns, less
- * shift times the lumped volume (NULL: none) of the nodes. */
-static void pack(struct harmonic_system *s, int clique, const int *node, int width,
+/* Packs a form over the components of the place into the clique's unknowns, less shift times the
+ * lumped volume (NULL: none) of the nodes. */
+static void pack(struct harmonic_system *s, int clique, const struct place *place,
                  const double *form, const double *volume, double shift) {
   double full[CLIQUE_MAX][CLIQUE_MAX] = {{0}}, *value = s->values[clique];
-  int count = s->start[clique + 1] - s->start[clique];
+  int count = s->start[clique + 1] - s->start[clique], width = HARMONIC_PARTS * place->count;
   struct harmonic_term local[HARMONIC_ELEMENT];
-  locate_terms(s, clique, node, width, local);
+  locate_terms(s, clique, place, local);
   for (int p = 0; p < HARMONIC_TERMS * width; p++) {
     int i = p / HARMONIC_TERMS, k = p % HARMONIC_TERMS, row = local[i].dof[k];
     double factor = local[i].factor[k];
@@ -267,43 +297,44 @@ enum status harmonic_inverted(int element, struct error *error) {
                    "element %d of the axisymmetric state is turned inside out", element);
 }
 
-/* Factorises the form of n less shift times the mass; *negative receives the negative pivots. */
 enum status harmonic_system_factor(const struct harmonic *h, struct harmonic_system *s,
                                    const struct harmonic_state *state, int n, double shift,
                                    int *negative, struct error *error) {
   const struct axi_mesh *mesh = h->mesh;
   double form[HARMONIC_ELEMENT * HARMONIC_ELEMENT];
-  const int *node;
-  int c = 0;
-  for (int e = 0; e < mesh->element_count; e++, c++) {
-    if (!harmonic_element(mesh, &h->geometry[e], e, state->u, n, form)) {
-      return harmonic_inverted(e, error);
+  for (int c = 0; c < s->clique_count; c++) {
+    struct place place = clique_place(h, state, c);
+    int edge = c - mesh->element_count, touch = edge - mesh->inner_count;
+    const double *volume = NULL;
+    if (edge < 0) {
+      volume = h->volume + (size_t)c * AXI_NODES;
+      if (!harmonic_element(mesh, &h->geometry[c], c, state->u, n, form)) {
+        return harmonic_inverted(c, error);
+      }
+    } else if (touch < 0) {
+      harmonic_edge(mesh, edge, state->u, state->pressure, n, form);
+    } else if (touch < state->touch_count) {
+      harmonic_touch(&state->touch[touch], n, form);
+    } else {
+      harmonic_contact(&state->contact->touch[touch - state->touch_count], n, form);
     }
-    clique_nodes(h, state, c, &node);
-    pack(s, c, node, HARMONIC_ELEMENT, form, h->volume + (size_t)e * AXI_NODES, shift);
-  }
-  for (int e = 0; e < mesh->inner_count; e++, c++) {
-    harmonic_edge(mesh, e, state->u, state->pressure, n, form);
-    clique_nodes(h, state, c, &node);
-    pack(s, c, node, HARMONIC_EDGE, form, NULL, 0);
-  }
-  for (int k = 0; k < state->touch_count; k++, c++) {
-    harmonic_touch(&state->touch[k], n, form);
-    int nodes = clique_nodes(h, state, c, &node);
-    pack(s, c, node, HARMONIC_PARTS * nodes, form, NULL, 0);
+    pack(s, c, &place, form, volume, shift);
   }
   *negative = s->dof_count == 0 ? 0 : ldlt_factor(s->ldlt, (const double *const *)s->values);
   return STATUS_OK;
 }
 
-/* The system for n: kept, or made into *own when there are touching points. */
 enum status harmonic_system_get(struct harmonic *h, const struct harmonic_state *state, int n,
-                                struct harmonic_system *own, struct harmonic_system **out,
-                                struct error *error) {
+                                struct harmonic_system own[HARMONIC_KINDS],
+                                struct harmonic_system **out, struct error *error) {
   int kind = kind_of(n);
-  *out = state->touch_count > 0 ? own : &h->system[kind];
-  if ((*out)->term) {
-    return STATUS_OK;
+  bool touches = state->touch_count > 0 || (state->contact && state->contact->touch_count > 0);
+  *out = touches ? &own[kind] : &h->system[kind];
+  return (*out)->term ? STATUS_OK : system_create(h, state, kind, *out, error);
+}
+
+void harmonic_systems_release(struct harmonic_system system[HARMONIC_KINDS]) {
+  for (int k = 0; k < HARMONIC_KINDS; k++) {
+    system_release(&system[k]);
   }
-  return system_create(h, state, kind, *out, error);
 }

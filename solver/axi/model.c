@@ -293,6 +293,10 @@ const struct axi_geometry *axi_model_geometry(const struct axi_model *model, int
   return &model->geometry[element];
 }
 
+struct axi_contact *axi_model_contact(const struct axi_model *model) {
+  return model->contact;
+}
+
 int axi_model_size(const struct axi_model *model) {
   return model->size;
 }

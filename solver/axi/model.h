@@ -11,6 +11,7 @@
 #include "solver/axi/element.h"
 
 struct axi_model;
+struct axi_contact;
 
 struct axi_model_options {
   bool contact; /* of inner edges with inner ones, outer with outer ones, and the axis */
@@ -31,6 +32,8 @@ void axi_model_destroy(struct axi_model *model);
 const struct axi_mesh *axi_model_mesh(const struct axi_model *model);
 /* Of an element, for strains and second variations. Owned by the model. */
 const struct axi_geometry *axi_model_geometry(const struct axi_model *model, int element);
+/* Contact of the surfaces, NULL without; owned by the model. */
+struct axi_contact *axi_model_contact(const struct axi_model *model);
 /* Number of unknowns; with a plate or nodes ahead the last one is h. */
 int axi_model_size(const struct axi_model *model);
 bool axi_model_has_elongation(const struct axi_model *model);
