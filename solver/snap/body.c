@@ -7,9 +7,6 @@
 enum status snap_body_create(const struct snap_spec *spec, struct snap_body *body,
                              struct error *error) {
   memset(body, 0, sizeof *body);
-  if (spec->model == SNAP_SHELL) {
-    return error_set(error, STATUS_INVALID, "/model", "there is no shell model yet: \"solid\"");
-  }
   return solid_body_create(spec, body, error);
 }
 

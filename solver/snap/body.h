@@ -27,8 +27,8 @@ struct snap_body {
   int (*inverted)(const void *self, const double *u);
   /* Largest principal logarithmic strain of the PET, by its size. */
   double (*pet_strain)(const void *self, const double *u);
-  /* count[n] = negative pivots of the second variation with n waves, 0 <= n <= last. STATUS_OK,
-   * INVERTED or NO_MEMORY. */
+  /* NULL of a shell. count[n] = negative pivots of the second variation with n waves, 0 <= n <=
+   * last. STATUS_OK, INVERTED or NO_MEMORY. */
   enum status (*harmonics)(void *self, const struct axi_state *state, int last, int *count,
                            struct error *error);
   /* Regions with their outlines in mm, a new array of objects as results have it. */
@@ -48,7 +48,8 @@ enum status snap_body_state(const struct snap_body *body, struct axi_state *stat
 void snap_body_copy(const struct snap_body *body, const struct axi_state *from,
                     struct axi_state *to);
 
-/* Of nine-node elements through silicone and PET. As snap_body_create. */
+/* Of nine-node elements through silicone and PET, or a shell on their rows (solver/axi/shell.h). As
+ * snap_body_create. */
 enum status solid_body_create(const struct snap_spec *spec, struct snap_body *body,
                               struct error *error);
 

@@ -1,4 +1,4 @@
-/* A bellows of nine-node elements through silicone and PET. */
+/* A bellows of nine-node elements through silicone and PET, or of a shell on the same rows. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -109,6 +109,8 @@ static enum status solid_harmonics(void *self, const struct axi_state *state, in
   struct harmonic_touch ring = soft_ring(solid);
   struct harmonic_state base = {.u = state->u,
                                 .pressure = state->pressure,
+                                .elongation = state->elongation,
+                                .contact = axi_model_contact(solid->model),
                                 .touch = &ring,
                                 .touch_count = solid->spec->ends == SNAP_PERIODIC};
   return status == STATUS_OK ? harmonic_negative(solid->harmonic, &base, 0, last, count, error)
@@ -160,6 +162,9 @@ static json_t *solid_outlines(const void *self, const double *u) {
   return regions;
 }
 
+/* Elements of a shell relative to those of a solid. */
+static const double longer = 1.5;
+
 /* ---- the body ----------------------------------------------------------------------------- */
 
 static void solid_destroy(void *self) {
@@ -187,9 +192,15 @@ enum status solid_body_create(const struct snap_spec *spec, struct snap_body *bo
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the bellows");
   }
   solid->spec = spec;
+  bool shell = spec->model == SNAP_SHELL;
   struct bellows_fineness fineness = bellows_fineness(spec->accuracy);
-  struct axi_model_options options = {.contact = spec->contact};
+  if (shell) {
+    fineness = (struct bellows_fineness){1, 1, longer * fineness.length};
+    body->harmonics = NULL; /* rows move in the meridian plane alone */
+  }
   enum status status = bellows_create(spec, &fineness, &solid->bellows, error);
+  struct axi_model_options options = {.contact = spec->contact && !shell,
+                                      .row_nodes = shell ? solid->bellows.column_count : 0};
   if (status == STATUS_OK) {
     status = axi_model_create(&solid->bellows.mesh, &options, &solid->model, error);
   }

@@ -93,8 +93,8 @@ static void tell_progress(const struct snap_walk *walk, const struct axi_state *
 static bool is_due(const struct snap_walk *walk, const struct axi_state *state,
                    const struct continuation_point *point) {
   const struct snap_study *study = walk->study;
-  return !walk->quiet && study->spec->harmonics_to > 0 && state->negative_free == 0 &&
-         walk->path->control != SNAP_BY_PRESSURE_HELD &&
+  return !walk->quiet && study->spec->harmonics_to > 0 && study->body.harmonics &&
+         state->negative_free == 0 && walk->path->control != SNAP_BY_PRESSURE_HELD &&
          point->arc - walk->waves_at >= waves_step * study->body.length;
 }
 
