@@ -44,6 +44,7 @@ struct axi_touch {
   double gap;               /* m */
   double traction;          /* Pa, per undeformed area */
   double weight;            /* m2 */
+  double stiffness;         /* second derivative of the potential by the gap, N/m */
   double force[TOUCH_DOFS]; /* d potential / d x, N: slave nodes, master nodes; the shift's part is
                              * the sum over the master's z */
   double packed[TOUCH_PACKED]; /* of a tangent: second derivatives, upper triangle by rows */

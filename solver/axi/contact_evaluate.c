@@ -346,6 +346,7 @@ static bool touch_edge(struct axi_contact *c, const struct slave_point *p, doubl
                           .traction = f.value * traction,
                           .weight = weight};
   c->energy += f.value * energy;
+  t->stiffness = f.value * weight * slope;
   axi_edge_shape(at->xi, v.n, v.d);
   vary_way(&v, at->normal, t->force);
   for (int k = 0; k < TOUCH_DOFS; k++) {
@@ -359,7 +360,7 @@ static bool touch_edge(struct axi_contact *c, const struct slave_point *p, doubl
     }
   }
   if (tangent) {
-    add_gap(&v, at, f.value * force, f.value * weight * slope, t->packed);
+    add_gap(&v, at, f.value * force, t->stiffness, t->packed);
   }
   if (tangent && fading) {
     add_fading(&v, at, energy, force, &f, t->packed);
@@ -378,11 +379,12 @@ static bool touch_axis(struct axi_contact *c, const struct slave_point *p, doubl
   *t = (struct axi_touch){.slave = p->edge, .master = -1, .gap = p->x[0], .weight = weight};
   c->energy +=
       weight * potential(c->edge[p->edge].stiffness, c->offset, t->gap, &t->traction, &slope);
+  t->stiffness = weight * slope;
   for (int k = 0; k < TOUCH_DOFS; k++) {
     t->force[k] = -weight * t->traction * grad[k];
   }
   if (tangent) {
-    add_outer(weight * slope, grad, grad, t->packed);
+    add_outer(t->stiffness, grad, grad, t->packed);
   }
   return true;
 }

@@ -123,7 +123,10 @@ static enum status make_cliques(struct axi_model *m, struct error *error) {
   for (int k = 0; k < m->clique_count; k++) {
     bool element = k < mesh->element_count;
     int edge = k - mesh->element_count;
-    if (m->shell) {
+    if (edge >= mesh->inner_count) {
+      const struct axi_turning *t = &m->skin.turning[edge - mesh->inner_count];
+      axi_clique_init(m, t->node, t->count, &m->clique[k]);
+    } else if (m->shell) {
       axi_clique_init_rows(
           m, element ? axi_shell_element_row(m->shell, k) : axi_shell_edge_row(m->shell, edge),
           &m->clique[k]);
@@ -143,6 +146,13 @@ static enum status make_cliques(struct axi_model *m, struct error *error) {
     room += (size_t)(m->clique[k].count * (m->clique[k].count + 1) / 2);
   }
   return STATUS_OK;
+}
+
+static enum status make_skin(struct axi_model *m, struct error *error) {
+  if (m->options.row_nodes > 0) {
+    return error_set(error, STATUS_INVALID, NULL, "a shell has no skin of its own");
+  }
+  return axi_skin_create(m->mesh, m->options.skin, &m->skin, error);
 }
 
 static enum status make_contact(struct axi_model *m, struct error *error) {
@@ -203,7 +213,7 @@ static enum status measure(struct axi_model *m, struct error *error) {
 static bool reserve(struct axi_model *m) {
   const struct axi_mesh *mesh = m->mesh;
   size_t nodes = (size_t)mesh->node_count, dofs = 2 * nodes + 1;
-  m->fixed_count = mesh->element_count + mesh->inner_count;
+  m->fixed_count = mesh->element_count + mesh->inner_count + m->skin.count;
   m->clique_count = m->clique_capacity = m->fixed_count;
   size_t cliques = (size_t)m->clique_count;
   m->geometry = malloc(((size_t)mesh->element_count + 1) * sizeof *m->geometry);
@@ -230,7 +240,10 @@ enum status axi_model_create(const struct axi_mesh *mesh, const struct axi_model
     m->mesh = mesh;
     m->options = options ? *options : (struct axi_model_options){.contact = false};
   }
-  if (!m || !reserve(m)) {
+  if (m && m->options.skin > 0) {
+    status = make_skin(m, error);
+  }
+  if (status == STATUS_OK && (!m || !reserve(m))) {
     status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for a model of %d nodes",
                        mesh->node_count);
   }
@@ -272,6 +285,7 @@ void axi_model_destroy(struct axi_model *m) {
   free((void *)m->value);
   free(m->room);
   axi_contact_destroy(m->contact);
+  axi_skin_release(&m->skin);
   free(m->partners);
   free(m->first_partners);
   free(m->contact_room);
@@ -287,6 +301,10 @@ void axi_model_destroy(struct axi_model *m) {
 
 const struct axi_mesh *axi_model_mesh(const struct axi_model *model) {
   return model->mesh;
+}
+
+const struct axi_contact *axi_model_contact(const struct axi_model *model) {
+  return model->contact;
 }
 
 const struct axi_geometry *axi_model_geometry(const struct axi_model *model, int element) {

@@ -7,6 +7,7 @@
 #ifndef PNEULAB_AXI_MODEL_H
 #define PNEULAB_AXI_MODEL_H
 
+#include "solver/axi/contact.h"
 #include "solver/axi/continuation.h"
 #include "solver/axi/element.h"
 
@@ -17,6 +18,7 @@ struct axi_model_options {
   bool contact; /* of inner edges with inner ones, outer with outer ones, and the axis */
   double contact_stiffness; /* Pa/m; 0: chosen from the stiffness of the surface's elements */
   double contact_offset;    /* thickness at which touching begins, m; 0: from the element size */
+  double skin; /* thickness of a skin that bends on all surfaces (solver/axi/skin.h), m; 0: none */
   int row_nodes; /* of a shell (solver/axi/shell.h): nodes of a row through the wall, whose middle
                   * one is held and tied for it, and does not touch; 0: a solid */
 };
@@ -46,6 +48,10 @@ void axi_model_gather(const struct axi_model *model, const double *u, double *x)
 void axi_element_displacements(const struct axi_mesh *mesh, int element, const double *u,
                                double local[AXI_DOFS]);
 
+/* What touched in the last evaluation (a state's, during a visit); NULL for a model without
+ * contact. Owned by the model. */
+const struct axi_contact *axi_model_contact(const struct axi_model *model);
+
 struct axi_load {
   double pressure;   /* Pa */
   double force;      /* N, where h is free */
@@ -65,7 +71,7 @@ struct axi_state {
   double lambda;
   double pressure, force, elongation; /* Pa, N (applied or reaction), m */
   double volume;                      /* V, m3 */
-  double energy;                      /* W of the body without contact, J */
+  double energy;                      /* W of the body and its skin without contact, J */
   double contact_energy;              /* J */
   double contact_overlap;             /* deepest penetration, m; 0 where nothing touches */
   bool touching;

@@ -115,6 +115,30 @@ static void add_volume(struct axi_model *m, double pressure, bool tangent) {
   }
 }
 
+static enum status add_skin(struct axi_model *m, bool tangent, struct error *error) {
+  int first = m->mesh->element_count + m->mesh->inner_count;
+  for (int k = 0; k < m->skin.count; k++) {
+    const struct axi_turning *t = &m->skin.turning[k];
+    struct axi_clique *c = &m->clique[first + k];
+    double x[SKIN_NODES][2], force[SKIN_DOFS], packed[SKIN_PACKED], energy = 0;
+    for (int i = 0; i < 2 * t->count; i++) {
+      int at = 2 * t->node[i / 2] + i % 2;
+      x[i / 2][i % 2] = m->mesh->position[at] + m->u[at];
+    }
+    if (!axi_skin_evaluate(t, x, &energy, force, tangent ? packed : NULL)) {
+      return error_set(error, STATUS_INVERTED, NULL, "the surface at node %d folded back",
+                       t->node[0]);
+    }
+    m->energy += energy;
+    axi_clique_add_force(m, c, force, m->force);
+    if (tangent) {
+      clear(c);
+      axi_clique_add(c, packed);
+    }
+  }
+  return STATUS_OK;
+}
+
 enum status axi_model_evaluate(struct axi_model *m, const double *x, double pressure, bool tangent,
                                struct error *error) {
   size_t bytes = sizeof *m->force * (size_t)m->size;
@@ -127,6 +151,9 @@ enum status axi_model_evaluate(struct axi_model *m, const double *x, double pres
   }
   add_volume(m, pressure, tangent);
   enum status status = add_elements(m, tangent, error);
+  if (status == STATUS_OK) {
+    status = add_skin(m, tangent, error);
+  }
   if (status == STATUS_OK && m->contact) {
     status = axi_model_add_contact(m, x, tangent, error);
   }

@@ -2,9 +2,9 @@
 #ifndef PNEULAB_AXI_MODEL_INTERNAL_H
 #define PNEULAB_AXI_MODEL_INTERNAL_H
 
-#include "solver/axi/contact.h"
 #include "solver/axi/model.h"
 #include "solver/axi/shell.h"
+#include "solver/axi/skin.h"
 #include "solver/fe/ldlt.h"
 
 /* A displacement component is x[base] (0 for -1) + plus h. */
@@ -43,10 +43,11 @@ struct axi_model {
   struct axi_place *place;       /* 2 node + component; of a shell, 3 row + component */
   int size;                      /* unknowns; h is the last one when `elongation` */
   bool elongation;
-  int *node_of;     /* size: for the ordering */
-  double *weight;   /* size: metric whose square is the mean square displacement of the body */
-  double length;    /* largest extent of the meridian, m */
-  int fixed_count;  /* cliques of elements, of inner edges */
+  int *node_of;   /* size: for the ordering */
+  double *weight; /* size: metric whose square is the mean square displacement of the body */
+  double length;  /* largest extent of the meridian, m */
+  struct axi_skin skin;
+  int fixed_count;  /* cliques of elements, of inner edges, of the skin's turnings */
   int clique_count; /* and of partners in contact behind them */
   int clique_capacity;
   struct axi_clique *clique;
