@@ -99,6 +99,12 @@ double axi_bulk_modulus(const struct material_spec *material) {
   return material->bulk_ratio * material_shear_modulus(material);
 }
 
+struct axi_bulk axi_bulk_parts(const struct material_spec *material) {
+  double kappa = axi_bulk_modulus(material);
+  double local = fmin(kappa, AXI_LOCAL_BULK * material_shear_modulus(material));
+  return (struct axi_bulk){.local = local, .projected = kappa - local};
+}
+
 /* ---- deformation ------------------------------------------------------------------------- */
 
 /* The five components of F that are not always 0. */
@@ -183,7 +189,7 @@ void axi_element_pressure(const struct axi_geometry *geometry, const struct mate
     deform(&geometry->point[g], u, at[g].f);
     at[g].j = cofactor(at[g].f, at[g].c);
   }
-  project(geometry, axi_bulk_modulus(material), at, pressure);
+  project(geometry, axi_bulk_parts(material).projected, at, pressure);
 }
 
 /* ---- residual and tangent ---------------------------------------------------------------- */
@@ -246,8 +252,9 @@ static void add_bulk(const double inverse[9], double kappa, double g[3][AXI_DOFS
 
 /* Adds one Gauss point; grad = db/du only with a tangent. Returns its isochoric energy. */
 static double add_point(const struct axi_point *p, const struct deformed *at,
-                        const struct material_spec *material, const double pressure[3],
-                        double residual[AXI_DOFS], double *tangent, double grad[3][AXI_DOFS]) {
+                        const struct material_spec *material, double local,
+                        const double pressure[3], double residual[AXI_DOFS], double *tangent,
+                        double grad[3][AXI_DOFS]) {
   struct kinematics k = {.f = {0}};
   double stress[9], law[81], s[PARTS], d[PARTS][PARTS];
   for (int i = 0; i < PARTS; i++) {
@@ -256,7 +263,11 @@ static double add_point(const struct axi_point *p, const struct deformed *at,
   }
   k.j = at->j;
   double energy = hyperelastic_isochoric(material, &k, stress, tangent ? law : NULL);
-  double tension = pressure[0] * p->psi[0] + pressure[1] * p->psi[1] + pressure[2] * p->psi[2];
+  double change = at->j - 1, tension = local * change;
+  energy += 0.5 * local * change * change;
+  for (int i = 0; i < 3; i++) {
+    tension += pressure[i] * p->psi[i];
+  }
   for (int i = 0; i < PARTS; i++) {
     s[i] = p->weight * (stress[part[i]] + tension * at->c[i]);
   }
@@ -266,7 +277,7 @@ static double add_point(const struct axi_point *p, const struct deformed *at,
   }
   for (int i = 0; i < PARTS; i++) {
     for (int j = 0; j < PARTS; j++) {
-      d[i][j] = p->weight * law[9 * part[i] + part[j]];
+      d[i][j] = p->weight * (law[9 * part[i] + part[j]] + local * at->c[i] * at->c[j]);
     }
     s[i] = p->weight * at->c[i];
   }
@@ -286,7 +297,8 @@ bool axi_element_evaluate(const struct axi_geometry *geometry, const struct mate
                           const double u[AXI_DOFS], double *energy, double residual[AXI_DOFS],
                           double *tangent) {
   struct deformed at[AXI_POINTS];
-  double pressure[3], grad[3][AXI_DOFS] = {{0}}, kappa = axi_bulk_modulus(material);
+  double pressure[3], grad[3][AXI_DOFS] = {{0}};
+  struct axi_bulk bulk = axi_bulk_parts(material);
   if (!deform_all(geometry, u, at)) {
     return false;
   }
@@ -294,12 +306,13 @@ bool axi_element_evaluate(const struct axi_geometry *geometry, const struct mate
   if (tangent) {
     memset(tangent, 0, AXI_PACKED * sizeof *tangent);
   }
-  *energy = project(geometry, kappa, at, pressure);
+  *energy = project(geometry, bulk.projected, at, pressure);
   for (int g = 0; g < AXI_POINTS; g++) {
-    *energy += add_point(&geometry->point[g], &at[g], material, pressure, residual, tangent, grad);
+    *energy += add_point(&geometry->point[g], &at[g], material, bulk.local, pressure, residual,
+                         tangent, grad);
   }
   if (tangent) {
-    add_bulk(geometry->inverse, kappa, grad, tangent);
+    add_bulk(geometry->inverse, bulk.projected, grad, tangent);
   }
   return true;
 }

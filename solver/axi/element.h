@@ -4,11 +4,15 @@
  * Deformation gradient in the cylindrical basis, index 3 i + J with 0 = r, 1 = theta, 2 = z:
  *   F_rr = 1 + u_r,r   F_rz = u_r,z   F_zr = u_z,r   F_zz = 1 + u_z,z   F_tt = 1 + u_r / r
  * and F_rt = F_tr = F_zt = F_tz = 0. The energy is
- *   W(u) = sum_g w_g W_iso(F_g) + kappa/2 b . M^-1 b,   b_i = sum_g w_g psi_i (J_g - 1),
- *   M_ij = sum_g w_g psi_i psi_j,   w_g = 2 pi r dA,   psi = (1, (r - r_c)/l, (z - z_c)/l),
- * so that the pressure sum_i psi_i (kappa M^-1 b)_i is the projection of kappa (J - 1) onto the
- * linear functions (Sussman, Bathe 1987), and residual and tangent are exact derivatives. The
- * Gauss points are inside: an element may have nodes on the axis r = 0, whose u_r is held. */
+ *   W(u) = sum_g w_g (W_iso(F_g) + k/2 (J_g - 1)^2) + (kappa - k)/2 b . M^-1 b,
+ *   b_i = sum_g w_g psi_i (J_g - 1),   M_ij = sum_g w_g psi_i psi_j,   w_g = 2 pi r dA,
+ *   psi = (1, (r - r_c)/l, (z - z_c)/l),
+ * so that the pressure k (J - 1) + sum_i psi_i ((kappa - k) M^-1 b)_i holds the projection of J - 1
+ * onto the linear functions (Sussman, Bathe 1987), and residual and tangent are exact derivatives.
+ * The share k of the bulk modulus that acts on J at the points, AXI_LOCAL_BULK shear moduli, does
+ * not lock, but keeps J near 1 everywhere in the folds of a surface, where with the projection
+ * alone elements collapse. The Gauss points are inside: an element may have nodes on the axis r =
+ * 0, whose u_r is held. */
 #ifndef PNEULAB_AXI_ELEMENT_H
 #define PNEULAB_AXI_ELEMENT_H
 
@@ -17,6 +21,7 @@
 
 enum {
   AXI_POINTS = 9,           /* 3 x 3 Gauss points */
+  AXI_LOCAL_BULK = 30,      /* in shear moduli */
   AXI_DOFS = 2 * AXI_NODES, /* 2 a + i, i = 0 for u_r, 1 for u_z */
   AXI_PACKED = AXI_DOFS * (AXI_DOFS + 1) / 2,
   AXI_EDGE_DOFS = 2 * AXI_EDGE_NODES,
@@ -49,6 +54,13 @@ bool axi_geometry_init(double x[AXI_NODES][2], struct axi_geometry *geometry);
 /* Bulk modulus kappa = bulk_ratio x initial shear modulus, Pa. */
 double axi_bulk_modulus(const struct material_spec *material);
 
+/* Its two parts, Pa: k on J at the points, and kappa - k on the projection. */
+struct axi_bulk {
+  double local, projected;
+};
+
+struct axi_bulk axi_bulk_parts(const struct material_spec *material);
+
 /* Energy *energy (J), residual[2 a + i] = dW/du (N) and, unless NULL, tangent = d2W/du2, the upper
  * triangle by rows (N/m), at the displacements u[2 a + i]. False when J <= 0 at a Gauss point:
  * nothing is then written. */
@@ -59,8 +71,8 @@ bool axi_element_evaluate(const struct axi_geometry *geometry, const struct mate
 /* F at a Gauss point. Returns J. */
 double axi_deformation(const struct axi_point *point, const double u[AXI_DOFS], double f[9]);
 
-/* Parameters of the pressure, kappa M^-1 b in Pa (positive in tension): at a point it is
- * sum psi_i pressure[i]. */
+/* Parameters of the projected pressure, (kappa - k) M^-1 b in Pa (positive in tension): the
+ * pressure at a point is k (J - 1) + sum psi_i pressure[i]. */
 void axi_element_pressure(const struct axi_geometry *geometry, const struct material_spec *material,
                           const double u[AXI_DOFS], double pressure[3]);
 

@@ -46,13 +46,16 @@ static void add_tangent(const double tangent[81], double g[9][HARMONIC_ELEMENT],
   }
 }
 
-/* Adds pressure times the second derivative of J: J (G_iJ G_kL - G_iL G_kJ), G = F^-T. */
-static void add_volumetric(const struct kinematics *k, double pressure, double tangent[81]) {
+/* Adds pressure times the second derivative of J, J (G_iJ G_kL - G_iL G_kJ), G = F^-T, and the
+ * local bulk modulus times the square of the first one. */
+static void add_volumetric(const struct kinematics *k, double pressure, double local,
+                           double tangent[81]) {
   const double *g = k->cofactor;
   for (int p = 0; p < 9; p++) {
     for (int q = 0; q < 9; q++) {
       int i = p / 3, j = p % 3, m = q / 3, l = q % 3;
-      tangent[9 * p + q] += pressure * k->j * (g[p] * g[q] - g[3 * i + l] * g[3 * m + j]);
+      tangent[9 * p + q] += pressure * k->j * (g[p] * g[q] - g[3 * i + l] * g[3 * m + j]) +
+                            local * k->j * k->j * g[p] * g[q];
     }
   }
 }
@@ -79,6 +82,7 @@ bool harmonic_element(const struct axi_mesh *mesh, const struct axi_geometry *ge
                       const double *u, int n, double form[HARMONIC_ELEMENT * HARMONIC_ELEMENT]) {
   const struct axi_element *e = &mesh->element[element];
   const struct material_spec *material = &mesh->region[e->region];
+  struct axi_bulk bulk = axi_bulk_parts(material);
   double around = n == 0 ? 1 : 0.5; /* mean of cos^2 */
   double local[AXI_DOFS], parameter[LINEAR], dilatation[LINEAR][HARMONIC_ELEMENT] = {{0}};
   memset(form, 0, sizeof *form * HARMONIC_ELEMENT * HARMONIC_ELEMENT);
@@ -99,7 +103,7 @@ bool harmonic_element(const struct axi_mesh *mesh, const struct axi_geometry *ge
     }
     gradient(p, n, g);
     hyperelastic_isochoric(material, &k, stress, tangent);
-    add_volumetric(&k, pressure, tangent);
+    add_volumetric(&k, pressure + bulk.local * (k.j - 1), bulk.local, tangent);
     add_tangent(tangent, g, around * p->weight, form);
     for (int i = 0; i < HARMONIC_ELEMENT; i++) {
       double change = 0; /* of J */
@@ -111,7 +115,7 @@ bool harmonic_element(const struct axi_mesh *mesh, const struct axi_geometry *ge
       }
     }
   }
-  add_projection(geometry, around * axi_bulk_modulus(material), dilatation, form);
+  add_projection(geometry, around * bulk.projected, dilatation, form);
   return true;
 }
 

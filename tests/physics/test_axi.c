@@ -19,10 +19,10 @@ static void bent(const void *context, double s, double t, double x[2]) {
 }
 
 static const struct material_spec laws[] = {
-    {.model = MATERIAL_NEO_HOOKE, .terms = 1, .c = {1.3}, .bulk_ratio = 20},
-    {.model = MATERIAL_MOONEY_RIVLIN, .terms = 2, .c = {0.5, 0.2}, .bulk_ratio = 20},
-    {.model = MATERIAL_YEOH, .terms = 3, .c = {0.5, -0.05, 0.02}, .bulk_ratio = 20},
-    {.model = MATERIAL_OGDEN, .terms = 2, .c = {1.1, -0.2}, .alpha = {1.6, -2}, .bulk_ratio = 20},
+    {.model = MATERIAL_NEO_HOOKE, .terms = 1, .c = {1.3}, .bulk_ratio = 80},
+    {.model = MATERIAL_MOONEY_RIVLIN, .terms = 2, .c = {0.5, 0.2}, .bulk_ratio = 80},
+    {.model = MATERIAL_YEOH, .terms = 3, .c = {0.5, -0.05, 0.02}, .bulk_ratio = 80},
+    {.model = MATERIAL_OGDEN, .terms = 2, .c = {1.1, -0.2}, .alpha = {1.6, -2}, .bulk_ratio = 80},
 };
 enum { LAWS = sizeof laws / sizeof *laws };
 
