@@ -1,6 +1,7 @@
 #include "solver/hlpv/check.h"
 
 #include <math.h>
+#include "solver/job/hlpv_control.h"
 
 /* A soft actuator of a hand's size pushes with less than this at 8 psi. */
 #define FORCE_MAX 200.0
@@ -9,7 +10,11 @@
 /* ---- sizes -------------------------------------------------------------------------------- */
 
 /* Largest magnitude of the set-point. */
-static double largest_set_point(const struct hlpv_input *input) {
+static double largest_set_point(const struct hlpv_spec *spec) {
+  const struct hlpv_input *input = &spec->input;
+  if (spec->control) {
+    return fmax(fabs(spec->control->lowest), fabs(spec->control->highest));
+  }
   double largest = input->profile == HLPV_SINE ? fabs(input->mean) + fabs(input->amplitude) : 0.0;
   for (size_t i = 0; i < input->count; i++) {
     largest = fmax(largest, fabs(input->value[i]));
@@ -43,7 +48,7 @@ static double rate_of_change(const struct hlpv_spec *spec, double u, const doubl
 }
 
 void check_sizes(const struct hlpv_spec *spec, double size[HLPV_STATES]) {
-  double u = largest_set_point(&spec->input);
+  double u = largest_set_point(spec);
   for (int i = 0; i < HLPV_STATES; i++) {
     size[i] = fabs(spec->initial[i]);
   }

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "solver/hlpv/tracking.h"
+
 /* Part of a step's change within which h has settled. */
 #define SETTLED 0.02
 
@@ -15,13 +17,18 @@ void hlpv_trajectory_release(struct hlpv_trajectory *trajectory) {
   free(trajectory->sample);
   free(trajectory->event);
   free(trajectory->hold);
+  if (trajectory->tracking) {
+    tracking_release(trajectory->tracking);
+  }
+  free(trajectory->tracking);
+  free(trajectory->design);
   *trajectory = (struct hlpv_trajectory){0};
 }
 
 enum status recorder_open(struct recorder *recorder, struct error *error) {
   const struct hlpv_spec *spec = recorder->spec;
   struct hlpv_trajectory *out = recorder->out;
-  bool held = spec->input.profile == HLPV_HELD;
+  bool held = spec->input.profile == HLPV_HELD && !spec->control;
   /* One more than the product, which may fall below a whole number by round-off. */
   recorder->sample_room = recorder->no_samples ? 0 : (size_t)(spec->end * spec->sample_rate) + 2;
   recorder->event_room = EVENTS_FIRST;
@@ -59,12 +66,13 @@ double recorder_next(const struct recorder *recorder) {
   return last ? fmin(time, end) : INFINITY;
 }
 
-void recorder_sample(struct recorder *recorder, int mode, const double x[HLPV_STATES]) {
+void recorder_sample(struct recorder *recorder, int mode, double set_point,
+                     const double x[HLPV_STATES]) {
   if (recorder->out->sample_count == recorder->sample_room) {
     return;
   }
   struct hlpv_sample sample = {.time = recorder_next(recorder), .mode = mode};
-  sample.set_point = hlpv_set_point(&recorder->spec->input, sample.time);
+  sample.set_point = set_point;
   memcpy(sample.x, x, sizeof sample.x);
   recorder->out->sample[recorder->out->sample_count++] = sample;
 }
@@ -74,8 +82,7 @@ static void widen(struct hlpv_trajectory *out, int i, double value) {
   out->highest[i] = fmax(out->highest[i], value);
 }
 
-/* Cubic through values and derivatives at both ends, at the part s of the step. */
-static double hermite(const struct hlpv_point *a, const struct hlpv_point *b, int i, double s) {
+double recorder_between(const struct hlpv_point *a, const struct hlpv_point *b, int i, double s) {
   double step = b->time - a->time, r = 1.0 - s;
   return r * r * (1.0 + 2.0 * s) * a->x[i] + s * s * (1.0 + 2.0 * r) * b->x[i] +
          s * r * step * (r * a->rate[i] - s * b->rate[i]);
@@ -84,7 +91,7 @@ static double hermite(const struct hlpv_point *a, const struct hlpv_point *b, in
 /* Where the cubic's derivative vanishes between ends of opposite slope: the secant of the slopes,
  * whose error in the value is of higher order since the value is stationary there. */
 static double extreme_value(const struct hlpv_point *a, const struct hlpv_point *b, int i) {
-  return hermite(a, b, i, a->rate[i] / (a->rate[i] - b->rate[i]));
+  return recorder_between(a, b, i, a->rate[i] / (a->rate[i] - b->rate[i]));
 }
 
 static void take_speed(struct recorder *recorder, double velocity) {
@@ -135,7 +142,7 @@ static void follow_settling(struct recorder *recorder, const struct hlpv_point *
     double out = 0.0, in = 1.0;
     for (int n = 0; n < HALVINGS; n++) {
       double middle = 0.5 * (out + in);
-      bool inside = fabs(hermite(a, b, HLPV_H, middle) - steady) <= band;
+      bool inside = fabs(recorder_between(a, b, HLPV_H, middle) - steady) <= band;
       *(inside ? &in : &out) = middle;
     }
     recorder->outside = a->time + in * (b->time - a->time);
@@ -185,6 +192,9 @@ void recorder_span(struct recorder *recorder, const struct hlpv_point *a,
   if (recorder->holding) {
     follow_settling(recorder, a, b);
   }
+  if (recorder->tracking) {
+    tracking_span(recorder->tracking, a, b);
+  }
 }
 
 enum status recorder_event(struct recorder *recorder, const struct hlpv_event *event,
@@ -209,6 +219,9 @@ enum status recorder_event(struct recorder *recorder, const struct hlpv_event *e
     hold->switches++;
     find_steady(recorder, recorder->spec->transition[event->transition].to, hold);
     recorder->outside = event->time;
+  }
+  if (recorder->tracking) {
+    tracking_switch(recorder->tracking, event, recorder->spec->transition[event->transition].to);
   }
   return STATUS_OK;
 }

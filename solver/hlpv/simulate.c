@@ -1,12 +1,14 @@
 #include "solver/hlpv/simulate.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include "solver/base/clock.h"
 #include "solver/hlpv/accumulation.h"
 #include "solver/hlpv/check.h"
 #include "solver/hlpv/integrator.h"
 #include "solver/hlpv/record.h"
+#include "solver/hlpv/tracking.h"
 
 /* Sizes of a state by which its loss to infinity is known. */
 #define UNBOUNDED 1e6
@@ -27,6 +29,7 @@ struct simulation {
   double reported_s;                 /* wall clock of the last progress line */
   bool grazed[HLPV_TRANSITIONS_MAX]; /* a near miss has been told of */
   bool checked[HLPV_MODES_MAX];      /* used since the last corner */
+  struct controller *controller;     /* that makes the set-point, or NULL */
 };
 
 /* ---- one mode ----------------------------------------------------------------------------- */
@@ -158,6 +161,12 @@ static enum status look_around(struct simulation *s, struct error *error) {
                                    s->now.time, s->now.x[HLPV_H], s->spec->mode[s->mode].name);
 }
 
+/* The set-point at the next sample; at a corner the one after it. */
+static double sample_set_point(const struct simulation *s) {
+  return s->controller ? s->set_point.value
+                       : hlpv_set_point(&s->spec->input, recorder_next(&s->recorder));
+}
+
 /* One step of the integrator with its samples. */
 static enum status advance(struct simulation *s, int root[HLPV_TRANSITIONS_MAX],
                            struct error *error) {
@@ -172,7 +181,7 @@ static enum status advance(struct simulation *s, int root[HLPV_TRANSITIONS_MAX],
     double between[HLPV_STATES];
     memcpy(between, x, sizeof between);
     integrator_interpolate(s->integrator, recorder_next(&s->recorder), between);
-    recorder_sample(&s->recorder, s->mode, between);
+    recorder_sample(&s->recorder, s->mode, sample_set_point(s), between);
   }
   set_point_of_time(s, time, x, &s->now);
   recorder_span(&s->recorder, &before, &s->now);
@@ -228,7 +237,7 @@ static enum status run_all(struct simulation *s, struct error *error) {
   for (size_t i = 0; status == STATUS_OK && s->now.time < s->spec->end; i++) {
     double stop = open_piece(s, i);
     if (i == 0) {
-      recorder_sample(&s->recorder, s->mode, s->now.x);
+      recorder_sample(&s->recorder, s->mode, s->set_point.value, s->now.x);
     }
     if (held) {
       recorder_hold_open(&s->recorder, s->now.time, s->set_point.value, s->mode, s->now.x);
@@ -239,6 +248,81 @@ static enum status run_all(struct simulation *s, struct error *error) {
       s->now.time = stop;
       status = look_around(s, error);
     }
+  }
+  return status;
+}
+
+/* ---- position control ---------------------------------------------------------------------- */
+
+/* Warns of what the step that has just ended shows. */
+static void judge_step(struct simulation *s, size_t index) {
+  const struct tracking_step *step = &s->recorder.tracking->step[index];
+  if (!step->reached) {
+    recorder_warn(&s->recorder,
+                  "no state of rest has the elongation %.6g mm, wanted from %.6g s: it lies in a "
+                  "gap between modes, beyond the saturation or too near to a guard; the nearest, "
+                  "%.6g mm, is aimed at",
+                  1e3 * step->reference, step->start, 1e3 * step->aim);
+  }
+  if (tracking_cycles(step)) {
+    recorder_warn(&s->recorder,
+                  "limit cycle: the elongation %.6g mm, wanted from %.6g s, is not held; the mode "
+                  "changes %d times until %.6g s, last at %.6g s",
+                  1e3 * step->reference, step->start, step->switches, s->now.time,
+                  step->last_switch);
+  }
+}
+
+/* One sample of the controller and the time until the next, `stop`. */
+static enum status run_sample(struct simulation *s, double stop, struct error *error) {
+  struct tracking *tracking = s->recorder.tracking;
+  const double measured[DESIGN_OUTPUTS] = {s->now.x[HLPV_H], s->now.x[HLPV_PRESSURE]};
+  struct control_action action;
+  size_t steps = tracking->count;
+  controller_sample(s->controller, s->now.time, measured, &action);
+  s->set_point =
+      (struct set_point){.input = &s->spec->input, .start = s->now.time, .value = action.set_point};
+  memset(s->checked, 0, sizeof s->checked);
+  tracking_sample(tracking, s->now.time, stop - s->now.time, s->now.x[HLPV_H], s->spec->end,
+                  &action);
+  if (tracking->count > steps && steps > 0) {
+    judge_step(s, steps - 1);
+  }
+  return run_piece(s, stop, error);
+}
+
+static enum status run_controlled(struct simulation *s, struct error *error) {
+  double interval = s->spec->control->interval;
+  struct tracking *tracking = s->recorder.tracking;
+  enum status status = STATUS_OK;
+  recorder_sample(&s->recorder, s->mode, s->set_point.value, s->now.x);
+  for (size_t k = 1; status == STATUS_OK && s->now.time < s->spec->end; k++) {
+    double stop = fmin((double)k * interval, s->spec->end);
+    status = run_sample(s, stop, error);
+    if (status == STATUS_OK) {
+      s->now.time = stop;
+      status = look_around(s, error);
+    }
+  }
+  if (tracking->count > 0) {
+    judge_step(s, tracking->count - 1);
+  }
+  return status;
+}
+
+/* Opens what a position control needs; the trajectory owns it but for the controller. */
+static enum status open_control(struct simulation *s, struct error *error) {
+  struct hlpv_trajectory *out = s->recorder.out;
+  enum status status = controller_create(s->spec, &s->controller, error);
+  out->tracking = calloc(1, sizeof *out->tracking);
+  out->design = malloc(sizeof *out->design);
+  if (status == STATUS_OK && (!out->tracking || !out->design)) {
+    return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the control");
+  }
+  if (status == STATUS_OK) {
+    *out->design = *controller_design(s->controller);
+    status = tracking_open(out->tracking, s->spec->control, error);
+    s->recorder.tracking = out->tracking;
   }
   return status;
 }
@@ -258,13 +342,17 @@ enum status hlpv_simulate(const struct hlpv_spec *spec, const struct hlpv_option
   if (status == STATUS_OK) {
     status = integrator_create(spec, s.size, &s.integrator, error);
   }
+  if (status == STATUS_OK && spec->control) {
+    status = open_control(&s, error);
+  }
   if (status == STATUS_OK) {
     check_model(&s.recorder);
-    status = run_all(&s, error);
+    status = spec->control ? run_controlled(&s, error) : run_all(&s, error);
   }
   trajectory->time = s.now.time;
   trajectory->mode = s.mode;
   memcpy(trajectory->x, s.now.x, sizeof trajectory->x);
   integrator_destroy(s.integrator);
+  controller_destroy(s.controller);
   return status;
 }

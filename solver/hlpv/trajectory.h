@@ -40,12 +40,17 @@ struct hlpv_counts {
   long steps, evaluations, restarts;
 };
 
+struct tracking;
+struct design;
+
 struct hlpv_trajectory {
   size_t sample_count, event_count, hold_count;
   struct hlpv_sample *sample;
   struct hlpv_event *event;
-  struct hlpv_hold *hold; /* of a held set-point, else none */
-  double time;            /* reached */
+  struct hlpv_hold *hold;    /* of a held set-point, else none */
+  struct tracking *tracking; /* of a position that is controlled, else NULL */
+  struct design *design;     /* of its controller */
+  double time;               /* reached */
   int mode;
   double x[HLPV_STATES];
   double peak_speed; /* largest |v| */

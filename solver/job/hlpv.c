@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "solver/job/hlpv_control.h"
+
 void hlpv_input_release(struct hlpv_input *input) {
   free(input->time);
   free(input->value);

@@ -65,6 +65,9 @@ struct hlpv_input {
   double mean, amplitude, frequency, phase;
 };
 
+/* Position control: solver/job/hlpv_control.h. */
+struct hlpv_control;
+
 struct hlpv_spec {
   double mass;        /* kg */
   double gamma;       /* N/Pa, an area */
@@ -74,10 +77,11 @@ struct hlpv_spec {
   struct hlpv_transition transition[HLPV_TRANSITIONS_MAX];
   int initial_mode;
   double initial[HLPV_STATES];
-  struct hlpv_input input;
-  double end;         /* s */
-  double sample_rate; /* Hz */
-  double tolerance;   /* of the integration, relative to the size of each state */
+  struct hlpv_input input;      /* with a control: what its set-point would be at rest */
+  struct hlpv_control *control; /* that makes the set-point, or NULL; owned */
+  double end;                   /* s */
+  double sample_rate;           /* Hz */
+  double tolerance;             /* of the integration, relative to the size of each state */
 };
 
 void hlpv_input_release(struct hlpv_input *input);

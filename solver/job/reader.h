@@ -99,6 +99,18 @@ struct hlpv_input;
 enum status reader_set_point(const struct reader *reader, const json_t *value, const char *pointer,
                              struct hlpv_input *input);
 
+/* The same for an elongation, which is in no table. */
+enum status reader_reference(const struct reader *reader, const json_t *value, const char *pointer,
+                             struct hlpv_input *input);
+
+struct hlpv_spec;
+
+/* Fills spec->control from the value of the key, and spec->input with what stands for it at the
+ * start; the model has been read, and spec is released as reader_hlpv says. STATUS_OK, INVALID or
+ * NO_MEMORY. */
+enum status reader_hlpv_control(const struct reader *reader, const json_t *value,
+                                struct hlpv_spec *spec);
+
 /* Fills name, timeout and snap of the job, as reader_hlpv does. Also STATUS_GEOMETRY. */
 enum status reader_snap(const struct reader *reader, const json_t *document, struct job_spec *job);
 

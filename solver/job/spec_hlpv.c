@@ -260,6 +260,22 @@ static enum status check_samples(const struct reader *reader, const struct hlpv_
                    floor((HLPV_SAMPLES_MAX - 1) / spec->end * 1e3) / 1e3);
 }
 
+/* The set-point, or what makes it. */
+static enum status read_drive(const struct reader *reader, const json_t *document,
+                              struct hlpv_spec *spec) {
+  const json_t *input = json_object_get(document, "input");
+  const json_t *control = json_object_get(document, "control");
+  if (!input == !control) {
+    return error_set(reader->error, STATUS_INVALID, control ? "/control" : NULL,
+                     "one of \"input\" and \"control\" is wanted, %s: a set-point over time, or a "
+                     "controller that makes it; for example \"input\": { \"hold\": [[\"0 s\", \"3 "
+                     "psi\"]] }",
+                     control ? "not both" : "and none is there");
+  }
+  return input ? reader_set_point(reader, input, "/input", &spec->input)
+               : reader_hlpv_control(reader, control, spec);
+}
+
 enum status reader_hlpv(const struct reader *reader, const json_t *document, struct job_spec *job) {
   const json_t *model = json_object_get(document, "model");
   struct hlpv_spec *spec = calloc(1, sizeof *spec);
@@ -284,7 +300,7 @@ enum status reader_hlpv(const struct reader *reader, const json_t *document, str
     status = read_initial(reader, json_object_get(document, "initial"), spec);
   }
   if (status == STATUS_OK) {
-    status = reader_set_point(reader, json_object_get(document, "input"), "/input", &spec->input);
+    status = read_drive(reader, document, spec);
   }
   if (status == STATUS_OK) {
     status = check_samples(reader, spec);

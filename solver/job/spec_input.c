@@ -1,4 +1,4 @@
-/* The set-point of a pressure over time. */
+/* What is wanted over time: the set-point of a pressure, or an elongation. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,6 +10,20 @@
 #include "solver/job/reader.h"
 
 enum { POINTER_MAX = 220 };
+
+/* The quantity of a profile. */
+struct wanted {
+  const char *unit; /* as in the schema */
+  double most;      /* in SI */
+  const char *beyond, *example;
+};
+
+static const struct wanted pressure = {
+    "kPa", 1e9, "a set-point beyond 1 GPa is none of a soft actuator; for example \"4 psi\"",
+    "{ \"hold\": [[\"0 s\", \"3 psi\"], [\"5 s\", \"4 psi\"]] }"};
+static const struct wanted elongation = {
+    "mm", 1e3, "an elongation beyond 1 km is none of an actuator; for example \"10 mm\"",
+    "{ \"hold\": [[\"0 s\", \"5 mm\"], [\"5 s\", \"10 mm\"]] }"};
 
 static enum status reserve_points(const struct reader *reader, size_t count,
                                   struct hlpv_input *input) {
@@ -32,7 +46,7 @@ static enum status check_times(const struct reader *reader, const struct hlpv_in
     }
     if (i == 0 && input->time[i] != 0.0) {
       return error_set(reader->error, STATUS_INVALID, where,
-                       "%sthe set-point begins at %.9g s; its first time must be 0 s", place,
+                       "%sthe profile begins at %.9g s; its first time must be 0 s", place,
                        input->time[i]);
     }
     if (i > 0 && !(input->time[i] > input->time[i - 1])) {
@@ -45,7 +59,8 @@ static enum status check_times(const struct reader *reader, const struct hlpv_in
 }
 
 static enum status read_points(const struct reader *reader, const json_t *points,
-                               const char *pointer, struct hlpv_input *input) {
+                               const char *pointer, const struct wanted *wanted,
+                               struct hlpv_input *input) {
   size_t index;
   json_t *point;
   enum status status = reserve_points(reader, json_array_size(points), input);
@@ -59,14 +74,12 @@ static enum status read_points(const struct reader *reader, const json_t *points
     status = units_read(reader->units, json_string_value(time), "s", &input->time[index], error);
     snprintf(where, sizeof where, "%.180s/%zu/0", pointer, index);
     if (status == STATUS_OK) {
-      status =
-          units_read(reader->units, json_string_value(value), "kPa", &input->value[index], error);
+      status = units_read(reader->units, json_string_value(value), wanted->unit,
+                          &input->value[index], error);
       snprintf(where, sizeof where, "%.180s/%zu/1", pointer, index);
     }
-    if (status == STATUS_OK && fabs(input->value[index]) > 1e9) {
-      status = error_set(error, STATUS_INVALID, where,
-                         "a set-point beyond 1 GPa is none of a soft actuator; for example \"4 "
-                         "psi\"");
+    if (status == STATUS_OK && fabs(input->value[index]) > wanted->most) {
+      status = error_set(error, STATUS_INVALID, where, "%s", wanted->beyond);
     }
     if (status != STATUS_OK) {
       reader_copy(error->pointer, sizeof error->pointer, where);
@@ -113,12 +126,39 @@ static enum status read_data(const struct reader *reader, const json_t *value, c
   return status;
 }
 
-static void read_sine(const struct reader *reader, const json_t *sine, struct hlpv_input *input) {
+static void read_sine(const struct reader *reader, const json_t *sine, const char *unit,
+                      struct hlpv_input *input) {
   input->profile = HLPV_SINE;
-  input->mean = reader_member(reader, sine, "mean", "kPa", 0.0);
-  input->amplitude = reader_member(reader, sine, "amplitude", "kPa", 0.0);
+  input->mean = reader_member(reader, sine, "mean", unit, 0.0);
+  input->amplitude = reader_member(reader, sine, "amplitude", unit, 0.0);
   input->frequency = reader_member(reader, sine, "frequency", "Hz", 0.0);
   input->phase = reader_member(reader, sine, "phase", "deg", 0.0);
+}
+
+/* A profile that the job gives by itself, not in a table. */
+static enum status read_given(const struct reader *reader, const json_t *value, const char *pointer,
+                              const struct wanted *wanted, struct hlpv_input *input) {
+  const json_t *hold = json_object_get(value, "hold"), *linear = json_object_get(value, "linear");
+  const json_t *sine = json_object_get(value, "sine");
+  char where[POINTER_MAX];
+  if (sine) {
+    read_sine(reader, sine, wanted->unit, input);
+    return STATUS_OK;
+  }
+  input->profile = hold ? HLPV_HELD : HLPV_LINEAR;
+  snprintf(where, sizeof where, "%s/%s", pointer, hold ? "hold" : "linear");
+  return read_points(reader, hold ? hold : linear, where, wanted, input);
+}
+
+enum status reader_reference(const struct reader *reader, const json_t *value, const char *pointer,
+                             struct hlpv_input *input) {
+  int given = !!json_object_get(value, "hold") + !!json_object_get(value, "linear") +
+              !!json_object_get(value, "sine");
+  return given == 1 ? read_given(reader, value, pointer, &elongation, input)
+                    : error_set(reader->error, STATUS_INVALID, pointer,
+                                "one of \"hold\", \"linear\" or \"sine\" is wanted, not %d; for "
+                                "example %s",
+                                given, elongation.example);
 }
 
 enum status reader_set_point(const struct reader *reader, const json_t *value, const char *pointer,
@@ -130,8 +170,8 @@ enum status reader_set_point(const struct reader *reader, const json_t *value, c
   if (given != 1) {
     return error_set(reader->error, STATUS_INVALID, pointer,
                      "one of \"hold\", \"linear\", \"sine\" or \"data\" is wanted, not %d; for "
-                     "example { \"hold\": [[\"0 s\", \"3 psi\"], [\"5 s\", \"4 psi\"]] }",
-                     given);
+                     "example %s",
+                     given, pressure.example);
   }
   if (!data && json_object_get(value, "columns")) {
     snprintf(where, sizeof where, "%s/columns", pointer);
@@ -143,14 +183,6 @@ enum status reader_set_point(const struct reader *reader, const json_t *value, c
                      "the key \"columns\" is missing; for example { \"time\": { \"name\": \"t\", "
                      "\"unit\": \"s\" }, \"set_point\": { \"name\": \"u\", \"unit\": \"kPa\" } }");
   }
-  if (sine) {
-    read_sine(reader, sine, input);
-    return STATUS_OK;
-  }
-  if (data) {
-    return read_data(reader, value, pointer, input);
-  }
-  input->profile = hold ? HLPV_HELD : HLPV_LINEAR;
-  snprintf(where, sizeof where, "%s/%s", pointer, hold ? "hold" : "linear");
-  return read_points(reader, hold ? hold : linear, where, input);
+  return data ? read_data(reader, value, pointer, input)
+              : read_given(reader, value, pointer, &pressure, input);
 }

@@ -3,7 +3,9 @@
 #include <math.h>
 #include "solver/base/clock.h"
 #include "solver/hlpv/simulate.h"
+#include "solver/job/hlpv_control.h"
 #include "solver/job/json.h"
+#include "solver/post/result_control.h"
 
 static void set_extension_ratio(json_t *object, const char *key, const struct hlpv_spec *spec,
                                 double h) {
@@ -52,6 +54,10 @@ static json_t *samples_array(const struct hlpv_spec *spec, const struct hlpv_tra
     json_t *o = json_object();
     json_set_finite(o, "time_s", sample->time);
     json_set_finite(o, "set_point_kPa", 1e-3 * sample->set_point);
+    if (spec->control) {
+      double wanted = hlpv_set_point(&spec->control->reference, sample->time);
+      json_set_finite(o, "reference_mm", 1e3 * wanted);
+    }
     json_set_finite(o, "h_mm", 1e3 * sample->x[HLPV_H]);
     json_set_finite(o, "velocity_m_s", sample->x[HLPV_VELOCITY]);
     json_set_finite(o, "pressure_kPa", 1e-3 * sample->x[HLPV_PRESSURE]);
@@ -105,6 +111,9 @@ static json_t *metrics_object(const struct hlpv_spec *spec, const struct hlpv_tr
     json_set_finite(o, "first_event_s", t->event[0].time);
     json_set_finite(o, "last_event_s", t->event[t->event_count - 1].time);
     json_set_finite(o, "trigger_pressure_kPa", 1e-3 * t->event[0].before[HLPV_PRESSURE]);
+  }
+  if (t->tracking) {
+    result_control_metrics(o, t);
   }
   return o;
 }
@@ -170,6 +179,9 @@ static void add_course(json_t *document, const struct hlpv_spec *spec,
   json_object_set_new(document, "events", events_array(spec, t));
   json_object_set_new(document, "final", final_object(spec, t));
   json_object_set_new(document, "holds", holds_array(spec, t));
+  if (t->tracking) {
+    result_control_store(document, spec, t);
+  }
   json_object_set_new(document, "model", model_object(spec));
 }
 
