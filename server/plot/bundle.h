@@ -11,9 +11,14 @@ struct bundle {
   size_t count, room;
 };
 
-/* Adds a series like `like` with a copy of `count` points. STATUS_NO_MEMORY. */
+/* Adds a series like `like` with copies of `count` points and of its errors and band, if it has
+ * any. STATUS_NO_MEMORY. */
 enum status bundle_add(struct bundle *bundle, struct chart_series like, const struct point *points,
                        size_t count, struct error *error);
+/* Adds a thin level line at zero behind what the bundle has, wide enough to cross every axis that
+ * shows it. STATUS_NO_MEMORY. */
+enum status bundle_add_zero(struct bundle *bundle, struct error *error);
+
 void bundle_release(struct bundle *bundle);
 
 #endif

@@ -150,6 +150,7 @@ struct panel {
   struct axes axes;
   struct box sheet;  /* all that the chart may use */
   double left;       /* pixels: least room left of the axis */
+  double beside;     /* pixels that a legend above the chart may use on its right */
   struct frame data; /* range of the points */
   size_t points;
   struct frame frame;
@@ -302,6 +303,23 @@ static void draw_spans(const struct panel *panel, struct canvas *canvas) {
   cairo_restore(canvas->cr);
 }
 
+/* The legend in a band above the chart: in the fewest columns that hold all of it, or else in the
+ * usual number. */
+static struct legend measure_band(const struct panel *panel, struct canvas *canvas) {
+  enum { COLUMNS_MOST = 8 };
+  const struct chart *chart = panel->chart;
+  const struct box *area = &panel->frame.area;
+  double width = area->width + panel->beside;
+  size_t usual = chart->series_count > 4 ? 2 : 1;
+  for (size_t columns = usual; columns <= COLUMNS_MOST; columns++) {
+    struct legend legend = legend_measure(canvas, chart, columns, width, 0.45 * area->height);
+    if (legend.complete) {
+      return legend;
+    }
+  }
+  return legend_measure(canvas, chart, usual, width, 0.45 * area->height);
+}
+
 /* Lays out the chart so that the legend is inside where nothing is, or else in a band above. */
 static struct legend lay_out_with_legend(struct panel *panel, struct canvas *canvas) {
   const struct chart *chart = panel->chart;
@@ -317,8 +335,7 @@ static struct legend lay_out_with_legend(struct panel *panel, struct canvas *can
       (complete && place_find(&place, legend.box.width, legend.box.height, margin, &legend.box));
   place_release(&place);
   if (!inside) {
-    size_t columns = chart->series_count > 4 ? 2 : 1;
-    legend = legend_measure(canvas, chart, columns, area->width, 0.45 * area->height);
+    legend = measure_band(panel, canvas);
     lay_out(panel, canvas, top + legend.box.height);
     legend.box.x = area->x;
     legend.box.y = top - 4 * canvas->unit;
@@ -364,9 +381,36 @@ void chart_draw(const struct chart *chart, struct canvas *canvas) {
   chart_heading(canvas, panel.frame.area.x, chart->title, chart->subtitle, chart->notice);
 }
 
-/* Draws rows x columns charts, given row by row, that share their x axis. */
-static void draw_table(const struct chart *charts, const double *shares, size_t rows,
-                       size_t columns, struct canvas *canvas) {
+static bool has_legend(const struct chart *chart) {
+  bool named = false;
+  for (size_t i = 0; i < chart->series_count; i++) {
+    named = named || (chart->series[i].name && chart->series[i].count > 0);
+  }
+  return named;
+}
+
+/* Moves the tops of charts beside one whose legend stands above it, so that all begin alike. When
+ * that is the first and only one of a row, it may be as long as the row. */
+static void align_row(struct panel *panels, size_t count, struct canvas *canvas) {
+  double lowest = 0;
+  bool alone = true;
+  for (size_t i = 1; i < count; i++) {
+    alone = alone && !has_legend(panels[i].chart);
+  }
+  panels[0].beside = alone ? (double)(count - 1) * panels[0].sheet.width : 0;
+  for (size_t i = 0; i < count; i++) {
+    lay_out_with_legend(&panels[i], canvas);
+    lowest = fmax(lowest, panels[i].frame.area.y);
+  }
+  for (size_t i = 0; i < count; i++) {
+    double shift = lowest - panels[i].frame.area.y;
+    panels[i].sheet.y += shift;
+    panels[i].sheet.height -= shift;
+  }
+}
+
+void chart_draw_grid(const struct chart *charts, const double *shares, size_t rows, size_t columns,
+                     struct canvas *canvas) {
   struct panel panels[CHART_TABLE];
   double top = chart_heading_height(canvas, charts->subtitle, charts->notice);
   double y = top, from = INFINITY, to = -INFINITY, left[CHART_TABLE] = {0};
@@ -392,6 +436,11 @@ static void draw_table(const struct chart *charts, const double *shares, size_t 
   }
   for (size_t i = 0; i < rows * columns; i++) {
     panels[i].left = left[i % columns];
+  }
+  for (size_t row = 0; row < rows; row++) {
+    align_row(panels + row * columns, columns, canvas);
+  }
+  for (size_t i = 0; i < rows * columns; i++) {
     draw_panel(&panels[i], canvas);
   }
   chart_heading(canvas, left[0], charts->title, charts->subtitle, charts->notice);
@@ -399,14 +448,5 @@ static void draw_table(const struct chart *charts, const double *shares, size_t 
 
 void chart_draw_stack(const struct chart *charts, const double *shares, size_t count,
                       struct canvas *canvas) {
-  draw_table(charts, shares, count, 1, canvas);
-}
-
-void chart_draw_grid(const struct chart *charts, size_t rows, size_t columns,
-                     struct canvas *canvas) {
-  double shares[CHART_TABLE];
-  for (size_t i = 0; i < rows; i++) {
-    shares[i] = 1.0 / (double)rows;
-  }
-  draw_table(charts, shares, rows, columns, canvas);
+  chart_draw_grid(charts, shares, count, 1, canvas);
 }

@@ -110,9 +110,9 @@ enum { CHART_TABLE = 8 };
 void chart_draw_stack(const struct chart *charts, const double *shares, size_t count,
                       struct canvas *canvas);
 
-/* The same for rows x columns charts of one size, given row by row, at most CHART_TABLE; the
- * numbers and the label of x are below the last row. */
-void chart_draw_grid(const struct chart *charts, size_t rows, size_t columns,
+/* The same for rows x columns charts, given row by row, at most CHART_TABLE; shares are those of
+ * the rows. The numbers and the label of x are below the last row. */
+void chart_draw_grid(const struct chart *charts, const double *shares, size_t rows, size_t columns,
                      struct canvas *canvas);
 
 /* Draws title, subtitle and notice with their left edge at `left`, in pixels. */

@@ -42,6 +42,25 @@ enum status data_samples(const json_t *result, const char *x_key, const char *y_
   return STATUS_OK;
 }
 
+size_t data_thin(struct point *points, size_t count, double dx, double dy) {
+  size_t used = 0, kept = 0;
+  struct point before = {0, 0};
+  for (size_t i = 0; i < count; i++) {
+    struct point p = points[i], last = used ? points[used - 1] : p;
+    bool far = fabs(p.x - last.x) > dx || fabs(p.y - last.y) > dy;
+    /* The point before a move is its corner; it lies behind what has been kept. */
+    if (used > 0 && far && kept + 1 < i) {
+      points[used++] = before;
+    }
+    if (used == 0 || far || i + 1 == count) {
+      points[used++] = p;
+      kept = i;
+    }
+    before = p;
+  }
+  return used;
+}
+
 void data_subtitle(const struct plot_input *input, char text[DATA_HEADING]) {
   const char *title = input->title ? input->title : "";
   if (input->job_id > 0) {

@@ -19,6 +19,10 @@ double data_element(const json_t *array, size_t index);
 enum status data_samples(const json_t *result, const char *x_key, const char *y_key,
                          struct point **points, size_t *count, struct error *error);
 
+/* Drops points of a curve that are within dx and dy of the last one that stays, but for corners and
+ * the end. Returns how many stay. */
+size_t data_thin(struct point *points, size_t count, double dx, double dy);
+
 /* "job 42 · name" */
 void data_subtitle(const struct plot_input *input, char text[DATA_HEADING]);
 

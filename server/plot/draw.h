@@ -39,11 +39,22 @@ enum status draw_tip3d(struct canvas *canvas, const struct plot_input *inputs, s
 /* Elongation, speed, pressure and set-point of a hybrid model over time, with its modes. */
 enum status draw_time(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                       struct error *error);
-/* Speed against elongation of a hybrid model, with its guards and resets. */
+/* Elongation of plate, cells and load, speed, pressure and bending over time, with the snaps. */
+enum status draw_motion(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                        struct error *error);
+/* Speed against elongation of a hybrid model, with its guards and resets; of cells in motion by how
+ * many of them are stretched. */
 enum status draw_phase(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                        struct error *error);
 /* Elongation of a hybrid model at the end of each held set-point, up and down. */
 enum status draw_steady(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                        struct error *error);
+
+/* Identified coefficients over the set-points with their intervals, and their polynomials. */
+enum status draw_coefficients(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                              struct error *error);
+/* Some trials as measured and as simulated, and what the two differ by. */
+enum status draw_fitted(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                         struct error *error);
 
 /* Equilibrium paths of a bistable actuator: pressure and axial force against elongation. */

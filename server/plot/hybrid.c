@@ -24,6 +24,20 @@ static size_t find_mode(struct hybrid *hybrid, const char *name) {
   return hybrid->mode_count - 1;
 }
 
+/* The name of the mode in which a sample is, NULL for none. */
+static const char *mode_of(const json_t *sample) {
+  static const char *const names[HYBRID_MODES] = {"no cell stretched",    "one cell stretched",
+                                                  "two cells stretched",  "three cells stretched",
+                                                  "four cells stretched", "five cells stretched",
+                                                  "six cells stretched",  "more cells stretched"};
+  const json_t *count = json_object_get(sample, "stretched_cells");
+  json_int_t cells = json_integer_value(count);
+  if (json_is_integer(count) && cells >= 0) {
+    return names[cells < HYBRID_MODES ? cells : HYBRID_MODES - 1];
+  }
+  return json_string_value(json_object_get(sample, "mode"));
+}
+
 /* Reads a sample behind those that are there; false when it is not complete. */
 static bool read_sample(const json_t *sample, struct hybrid *hybrid) {
   for (int q = 0; q < HYBRID_QUANTITIES; q++) {
@@ -33,7 +47,13 @@ static bool read_sample(const json_t *sample, struct hybrid *hybrid) {
     }
     hybrid->value[q][hybrid->count] = value;
   }
-  return json_is_string(json_object_get(sample, "mode"));
+  return mode_of(sample) != NULL;
+}
+
+/* Whether an event is a switch of modes: those of hybrid models are nothing else. */
+static bool is_of_mode(const json_t *event) {
+  const char *type = json_string_value(json_object_get(event, "type"));
+  return !type || strcmp(type, "snap") == 0 || strcmp(type, "return") == 0;
 }
 
 /* Whether a switch was made after the time `from` until `to`; *next: of the events, which are in
@@ -41,11 +61,12 @@ static bool read_sample(const json_t *sample, struct hybrid *hybrid) {
 static bool is_switched(const json_t *events, double from, double to, size_t *next) {
   bool found = false;
   for (; *next < json_array_size(events); ++*next) {
-    double time = data_number(json_array_get(events, *next), "time_s");
+    const json_t *event = json_array_get(events, *next);
+    double time = data_number(event, "time_s");
     if (time > to) {
       break;
     }
-    found = found || time > from;
+    found = found || (time > from && is_of_mode(event));
   }
   return found;
 }
@@ -88,7 +109,7 @@ enum status hybrid_read(const json_t *result, struct hybrid *hybrid, struct erro
   }
   json_array_foreach(samples, index, sample) {
     if (read_sample(sample, hybrid)) {
-      extend_span(hybrid, json_string_value(json_object_get(sample, "mode")), events, &next);
+      extend_span(hybrid, mode_of(sample), events, &next);
       hybrid->count++;
     }
   }
@@ -115,26 +136,15 @@ static double smallest_move(const struct hybrid *hybrid, enum hybrid_quantity q)
 enum status hybrid_curve(const struct hybrid *hybrid, enum hybrid_quantity x,
                          enum hybrid_quantity y, size_t first, size_t end, struct point **points,
                          size_t *count, struct error *error) {
-  double dx = smallest_move(hybrid, x), dy = smallest_move(hybrid, y);
-  size_t kept = first;
   *count = 0;
   *points = malloc((end - first + 1) * sizeof **points);
   if (!*points) {
     return error_set(error, STATUS_NO_MEMORY, NULL, "memory ran out for a curve");
   }
   for (size_t i = first; i < end; i++) {
-    struct point p = {hybrid->value[x][i], hybrid->value[y][i]};
-    struct point last = *count ? (*points)[*count - 1] : p;
-    bool far = fabs(p.x - last.x) > dx || fabs(p.y - last.y) > dy;
-    /* The point before a move is its corner. */
-    if (*count > 0 && far && kept + 1 < i) {
-      (*points)[(*count)++] = (struct point){hybrid->value[x][i - 1], hybrid->value[y][i - 1]};
-    }
-    if (*count == 0 || far || i + 1 == end) {
-      (*points)[(*count)++] = p;
-      kept = i;
-    }
+    (*points)[(*count)++] = (struct point){hybrid->value[x][i], hybrid->value[y][i]};
   }
+  *count = data_thin(*points, *count, smallest_move(hybrid, x), smallest_move(hybrid, y));
   return STATUS_OK;
 }
 
@@ -144,6 +154,53 @@ double hybrid_reach(const struct hybrid *hybrid, enum hybrid_quantity quantity) 
     reach = fmax(reach, fabs(hybrid->value[quantity][i]));
   }
   return 20 * (reach > 0 ? reach : 1);
+}
+
+enum status hybrid_add_bands(const struct hybrid *hybrid, bool named, struct bundle *bundle,
+                             struct error *error) {
+  enum status status = STATUS_OK;
+  for (size_t i = 0;
+       i < hybrid->span_count && hybrid->span_count <= HYBRID_SPANS && status == STATUS_OK; i++) {
+    const struct hybrid_span *span = &hybrid->span[i];
+    struct chart_series like = {.style = STYLE_SPAN,
+                                .guide = true,
+                                .colour = hybrid_band(span->mode),
+                                .name = named && span->named ? hybrid->mode[span->mode] : NULL};
+    status = bundle_add(bundle, like, span->ends, 2, error);
+  }
+  return status;
+}
+
+enum status hybrid_add_switches(const json_t *result, double reach, const char *name,
+                                struct bundle *bundle, struct error *error) {
+  const json_t *events = json_object_get(result, "events");
+  struct chart_series like = {
+      .guide = true, .colour = colour_muted, .width = 1.2, .dash = DASH_SHORT, .name = name};
+  enum status status = STATUS_OK;
+  size_t most = json_array_size(events) > HYBRID_SPANS ? 0 : json_array_size(events);
+  for (size_t i = 0; i < most && status == STATUS_OK; i++) {
+    const json_t *event = json_array_get(events, i);
+    double time = data_number(event, "time_s");
+    if (time >= 0 && is_of_mode(event)) {
+      const struct point line[2] = {{time, -reach}, {time, reach}};
+      status = bundle_add(bundle, like, line, 2, error);
+      like.name = NULL;
+    }
+  }
+  return status;
+}
+
+enum status hybrid_add_curve(const struct hybrid *hybrid, enum hybrid_quantity quantity,
+                             struct chart_series like, struct bundle *bundle, struct error *error) {
+  struct point *points = NULL;
+  size_t count = 0;
+  enum status status =
+      hybrid_curve(hybrid, HYBRID_TIME, quantity, 0, hybrid->count, &points, &count, error);
+  if (status == STATUS_OK) {
+    status = bundle_add(bundle, like, points, count, error);
+  }
+  free(points);
+  return status;
 }
 
 struct colour hybrid_colour(size_t mode) {

@@ -1,8 +1,8 @@
-/* The samples of a hybrid model for its plots. */
+/* The samples of a hybrid model, or of cells in continuous motion, for their plots. */
 #ifndef PNEULAB_PLOT_HYBRID_H
 #define PNEULAB_PLOT_HYBRID_H
 
-#include "server/plot/chart.h"
+#include "server/plot/bundle.h"
 #include "server/plot/plot.h"
 
 enum { HYBRID_MODES = 8, HYBRID_SPANS = 60 };
@@ -34,7 +34,8 @@ struct hybrid {
 };
 
 /* Reads the samples that are complete; what has more than HYBRID_MODES modes counts as the last of
- * them. The caller releases *hybrid in any case. STATUS_NO_MEMORY. */
+ * them. The mode of cells in motion is how many of them are stretched. The caller releases *hybrid
+ * in any case. STATUS_NO_MEMORY. */
 enum status hybrid_read(const json_t *result, struct hybrid *hybrid, struct error *error);
 void hybrid_release(struct hybrid *hybrid);
 
@@ -47,6 +48,20 @@ enum status hybrid_curve(const struct hybrid *hybrid, enum hybrid_quantity x,
 /* A height that every axis which shows the quantity ends below, so that lines up to it on both
  * sides of zero cross the picture, and few enough pixels for cairo. */
 double hybrid_reach(const struct hybrid *hybrid, enum hybrid_quantity quantity);
+
+/* Adds what lies behind curves over time: a band for each stay in a mode. Many stays make no
+ * picture: then there are none. named: they are in the legend. STATUS_NO_MEMORY. */
+enum status hybrid_add_bands(const struct hybrid *hybrid, bool named, struct bundle *bundle,
+                             struct error *error);
+
+/* Adds an upright line for each switch, `reach` high on both sides of zero; none when there are too
+ * many. name: in the legend, or NULL. STATUS_NO_MEMORY. */
+enum status hybrid_add_switches(const json_t *result, double reach, const char *name,
+                                struct bundle *bundle, struct error *error);
+
+/* Adds the curve of a quantity over time in the look of `like`. STATUS_NO_MEMORY. */
+enum status hybrid_add_curve(const struct hybrid *hybrid, enum hybrid_quantity quantity,
+                             struct chart_series like, struct bundle *bundle, struct error *error);
 
 /* Colours of a mode: of its curves, and as a band behind them. */
 struct colour hybrid_colour(size_t mode);

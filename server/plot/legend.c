@@ -28,7 +28,7 @@ static double text_width(struct canvas *canvas, const char *text) {
 struct legend legend_measure(struct canvas *canvas, const struct chart *chart, size_t columns,
                              double max_width, double max_height) {
   size_t count = named_count(chart);
-  struct legend legend = {.columns = columns};
+  struct legend legend = {.columns = columns, .complete = true};
   if (count == 0) {
     return legend;
   }
@@ -46,6 +46,7 @@ struct legend legend_measure(struct canvas *canvas, const struct chart *chart, s
   legend.shown = count <= legend.rows * columns ? count : legend.rows * columns - 1;
   double full = (double)columns * ((SAMPLE + GAP) * u + widest) +
                 (double)(columns - 1) * 3 * GAP * u + 2 * PAD * u;
+  legend.complete = count == legend.shown && full <= max_width;
   legend.box.width = fmin(full, max_width);
   legend.box.height = (2 * PAD + LINE * (double)legend.rows) * u;
   return legend;

@@ -8,8 +8,9 @@
 struct legend {
   struct box box; /* pixels */
   size_t columns, rows;
-  size_t shown; /* series named, column by column; when fewer than there are, the last place says
-                 * how many are missing */
+  size_t shown;  /* series named, column by column; when fewer than there are, the last place says
+                  * how many are missing */
+  bool complete; /* all are named, and no name is shortened */
 };
 
 /* Finds the size of the legend in so many columns. max_width and max_height limit it: names are

@@ -102,6 +102,11 @@ static enum status read_span(const struct hybrid *hybrid, size_t span, const str
     }
     if (after) {
       (*points)[(*count)++] = after->ends[0];
+    } else if (span + 1 < hybrid->span_count) {
+      /* What moves on without a reset goes to the first sample of the next mode. */
+      size_t next = hybrid->span[span + 1].first;
+      (*points)[(*count)++] =
+          (struct point){hybrid->value[HYBRID_H][next], hybrid->value[HYBRID_VELOCITY][next]};
     }
   } else if (status == STATUS_OK) {
     status = error_set(error, STATUS_NO_MEMORY, NULL, "memory ran out for a curve");

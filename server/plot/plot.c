@@ -41,10 +41,14 @@ static const struct entry entries[] = {
     {"time", "hlpv", draw_time, NULL},
     {"phase", "hlpv", draw_phase, NULL},
     {"steady", "hlpv", draw_steady, offer_steady},
+    {"coefficients", "identify", draw_coefficients, NULL},
+    {"fitted", "identify", draw_fitted, NULL},
     {"snap-path", "snap", draw_snap_path, NULL},
     {"shapes", "snap", draw_shapes, offer_shapes},
     {"held", "snap", draw_held, offer_held},
     {"stability", "snap", draw_stability, offer_stability},
+    {"time", "bistable", draw_motion, NULL},
+    {"phase", "bistable", draw_phase, NULL},
     {"overlay", NULL, draw_overlay, NULL},
 };
 
@@ -57,6 +61,8 @@ const char *const *plot_names(const char *kind) {
   static const char *const fit[] = {"fit", NULL};
   static const char *const curve[] = {"stress", NULL};
   static const char *const hlpv[] = {"time", "phase", NULL};
+  static const char *const identify[] = {"coefficients", "fitted", NULL};
+  static const char *const bistable[] = {"time", "phase", NULL};
   static const char *const snap[] = {"snap-path", NULL};
   static const char *const none[] = {NULL};
   return !kind                                 ? none
@@ -66,6 +72,8 @@ const char *const *plot_names(const char *kind) {
          : strcmp(kind, "fit-material") == 0   ? fit
          : strcmp(kind, "material-curve") == 0 ? curve
          : strcmp(kind, "hlpv") == 0           ? hlpv
+         : strcmp(kind, "identify") == 0       ? identify
+         : strcmp(kind, "bistable") == 0       ? bistable
          : strcmp(kind, "snap") == 0           ? snap
                                                : none;
 }

@@ -106,7 +106,8 @@ static void draw_band(struct canvas *canvas, const struct frame *frame,
     cairo_line_to(canvas->cr, p.x, p.y);
   }
   cairo_close_path(canvas->cr);
-  canvas_set_colour(canvas, tint(series->colour, 0.2));
+  /* bands that overlap stay visible */
+  cairo_set_source_rgba(canvas->cr, series->colour.r, series->colour.g, series->colour.b, 0.2);
   cairo_fill(canvas->cr);
 }
 

@@ -84,16 +84,3 @@ enum status snap_add_path(struct bundle *bundle, const json_t *path, const struc
   free(points);
   return status;
 }
-
-enum status snap_add_zero(struct bundle *bundle, struct error *error) {
-  struct chart_series like = {.guide = true, .colour = {0.62, 0.66, 0.70}, .width = 1.0};
-  double reach = 0;
-  for (size_t s = 0; s < bundle->count; s++) {
-    for (size_t i = 0; i < bundle->series[s].count; i++) {
-      reach = fmax(reach, fabs(bundle->series[s].points[i].x));
-    }
-  }
-  reach = 20 * (reach > 0 ? reach : 1);
-  const struct point ends[2] = {{-reach, 0}, {reach, 0}};
-  return bundle_add(bundle, like, ends, 2, error);
-}

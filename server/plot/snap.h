@@ -28,8 +28,4 @@ const json_t *snap_path(const json_t *result, const char *name);
 enum status snap_add_path(struct bundle *bundle, const json_t *path, const struct snap_look *look,
                           bool named[2], struct error *error);
 
-/* Adds a thin level line at zero behind what the bundle has, wide enough to cross every axis that
- * shows it. STATUS_NO_MEMORY. */
-enum status snap_add_zero(struct bundle *bundle, struct error *error);
-
 #endif

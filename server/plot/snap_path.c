@@ -107,7 +107,7 @@ static enum status read_sheet(const json_t *result, struct sheet *sheet, struct 
   for (size_t k = 0; k < KINDS && status == STATUS_OK; k++) {
     status = add_events(result, &kinds[k], sheet, error);
   }
-  return status == STATUS_OK && drawn > 0 ? snap_add_zero(&sheet->bundle, error) : status;
+  return status == STATUS_OK && drawn > 0 ? bundle_add_zero(&sheet->bundle, error) : status;
 }
 
 enum status draw_snap_path(struct canvas *canvas, const struct plot_input *inputs, size_t count,

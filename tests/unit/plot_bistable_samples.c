@@ -1,7 +1,6 @@
 #include "tests/unit/plot_bistable_samples.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 
 /* The cubic h (h - 9) (h - 25), its extrema, and whether it rises there. */
@@ -98,6 +97,96 @@ json_t *plot_sample_ladder(double trigger_kPa) {
   return json_pack("{s:s, s:s, s:{s:f, s:f}, s:o}", "status", "succeeded", "kind", "hlpv",
                    "metrics", "extension_ratio", 0.6, "trigger_pressure_kPa", trigger_kPa, "holds",
                    holds);
+}
+
+/* A value with its interval. */
+static json_t *interval(double set_point, double value, double half) {
+  return json_pack("{s:f, s:f, s:f, s:f}", "set_point_kPa", set_point, "value", value, "low",
+                   value - half, "high", value + half);
+}
+
+static json_t *identified_mode(const char *name, double stiffness, double slope) {
+  static const char *const keys[4] = {"stiffness_N_m", "damping_N_s_m", "alpha_1_s", "beta_1_s"};
+  json_t *points = json_array(), *polynomials = json_object();
+  for (int i = 1; i <= 5; i++) {
+    double u = 10.0 * i;
+    const double values[4] = {stiffness + slope * u, 20, -9, 9};
+    json_t *point = json_pack("{s:f}", "set_point_kPa", u);
+    for (int k = 0; k < 4; k++) {
+      json_object_set_new(point, keys[k], interval(u, values[k], k == 1 && i == 1 ? 400 : 1));
+    }
+    json_array_append_new(points, point);
+  }
+  for (int k = 0; k < 4; k++) {
+    const double values[4] = {stiffness, 20, -9, 9};
+    json_t *band = json_array();
+    for (int i = 0; i <= 40; i++) {
+      double u = 10 + i, value = values[k] + (k == 0 ? slope * u : 0);
+      json_array_append_new(band, interval(u, value, 0.02 * value));
+    }
+    json_object_set_new(polynomials, keys[k], json_pack("{s:o}", "band", band));
+  }
+  return json_pack("{s:s, s:o, s:o}", "name", name, "points", points, "polynomials", polynomials);
+}
+
+static json_t *measured_trial(int number) {
+  double set_point = 10.0 * (1 + number % 3);
+  bool held_out = number % 3 == 2;
+  json_t *samples = json_array();
+  char name[20];
+  snprintf(name, sizeof name, "%d", number + 1);
+  for (int i = 0; i <= 400; i++) {
+    double t = 0.05 * i, p = set_point * (t < 10 ? 1 - exp(-2 * t) : exp(-2 * (t - 10)));
+    json_array_append_new(
+        samples, json_pack("{s:f, s:f, s:f, s:f, s:f, s:f}", "time_s", t, "set_point_kPa",
+                           t < 10 ? set_point : 0.0, "h_mm", 0.5 * p + held_out, "pressure_kPa", p,
+                           "simulated_h_mm", 0.5 * p, "simulated_pressure_kPa", p));
+  }
+  return json_pack("{s:s, s:b, s:o}", "name", name, "held_out", held_out, "samples", samples);
+}
+
+json_t *plot_sample_identify(void) {
+  json_t *trials = json_array();
+  for (int i = 0; i < 9; i++) {
+    json_array_append_new(trials, measured_trial(i));
+  }
+  return json_pack("{s:s, s:s, s:{s:f, s:f}, s:[o, o], s:o}", "status", "succeeded", "kind",
+                   "identify", "metrics", "held_out_r_squared_h", 0.99,
+                   "held_out_r_squared_pressure", 0.98, "modes",
+                   identified_mode("compressed", 6000, -50), identified_mode("stretched", 2000, 0),
+                   "trials", trials);
+}
+
+json_t *plot_sample_motion(bool load) {
+  json_t *samples = json_array(), *events = json_array();
+  for (int i = 0; i <= 800; i++) {
+    double t = 0.005 * i, h = 0;
+    json_t *sample = json_pack("{s:f, s:f, s:f, s:i}", "time_s", t, "set_point_kPa", 40.0,
+                               "pressure_kPa", 10.0 * t, "stretched_cells", t < 3 ? (int)t : 3);
+    for (int cell = 0; cell < 3; cell++) {
+      char key[20];
+      double since = t - 1 - cell, own = since > 0 ? 10 * (1 - exp(-40 * since)) : 0;
+      snprintf(key, sizeof key, "cell_%d_mm", cell + 1);
+      json_object_set_new(sample, key, json_real(own));
+      h += own;
+    }
+    json_object_set_new(sample, "h_mm", json_real(h));
+    json_object_set_new(sample, "velocity_m_s", json_real(exp(-40 * fmod(t, 1))));
+    if (load) {
+      json_object_set_new(sample, "bending_angle_deg", json_real(2 * h));
+      json_object_set_new(sample, "set_point_2_kPa", json_real(20));
+      json_object_set_new(sample, "pressure_2_kPa", json_real(5 * t));
+      json_object_set_new(sample, "load_h_mm", json_real(h + 1));
+      json_object_set_new(sample, "load_velocity_m_s", json_real(0.1));
+    }
+    json_array_append_new(samples, sample);
+  }
+  for (int cell = 0; cell < 3; cell++) {
+    json_array_append_new(events, json_pack("{s:s, s:f}", "type", "snap", "time_s", 1.0 + cell));
+    json_array_append_new(events, json_pack("{s:s, s:f}", "type", "stop", "time_s", 1.5 + cell));
+  }
+  return json_pack("{s:s, s:s, s:o, s:o}", "status", "succeeded", "kind", "bistable", "samples",
+                   samples, "events", events);
 }
 
 json_t *plot_sample_bistable_study(json_t *results[], size_t count) {

@@ -12,10 +12,10 @@
   "trapezoidal, with all four faces inclined by different angles, until nobody can read it"
 
 static const char *const all_plots[] = {
-    "curves",  "metric",      "ranking",   "workspace", "twist",     "mesh",
-    "suction", "measured",    "midline3d", "tip3d",     "angle",     "tip",
-    "midline", "contraction", "fit",       "stress",    "time",      "phase",
-    "steady",  "snap-path",   "shapes",    "held",      "stability", "overlay"};
+    "curves",   "metric",    "ranking",      "workspace", "twist",  "mesh",      "suction",
+    "measured", "midline3d", "tip3d",        "angle",     "tip",    "midline",   "contraction",
+    "fit",      "stress",    "time",         "phase",     "steady", "snap-path", "shapes",
+    "held",     "stability", "coefficients", "fitted",    "overlay"};
 enum { ALL = sizeof all_plots / sizeof *all_plots };
 
 /* Draws everything that a document may be drawn as: a picture or a refusal, nothing else. */
@@ -126,15 +126,19 @@ static void damage(json_t *value, unsigned *state) {
 }
 
 START_TEST(damaged_documents) {
-  json_t *whole[] = {plot_sample_grid(3), plot_sample_designs(4), plot_sample_spatial(60),
-                     plot_sample_snap(30), plot_sample_ladder(30)};
+  json_t *whole[] = {plot_sample_grid(3),   plot_sample_designs(4), plot_sample_spatial(60),
+                     plot_sample_snap(30),  plot_sample_identify(), plot_sample_motion(true),
+                     plot_sample_ladder(30)};
   enum { WHOLE = sizeof whole / sizeof *whole };
   unsigned state = 4;
   plot_sample_rank(whole[1], 4);
   plot_sample_suckers(whole[1]);
-  for (int i = 0; i < 150; i++) {
+  for (int i = 0; i < 210; i++) {
     json_t *document = json_deep_copy(whole[i % WHOLE]);
-    json_object_del(document, "kind"); /* so that every plot has a try */
+    if (i / WHOLE % 2) {
+      json_object_del(document,
+                      "kind"); /* then any plot has a try, and not only those of the kind */
+    }
     for (int k = 0; k < 6; k++) {
       damage(document, &state);
     }

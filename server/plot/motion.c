@@ -1,0 +1,172 @@
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "server/plot/data.h"
+#include "server/plot/draw.h"
+#include "server/plot/hybrid.h"
+
+/* Cells and actuators that are drawn: more could not be told apart. */
+enum { CELLS_MOST = 7, ACTUATORS_MOST = 6, PANELS = 4, KEY = 40, NAME = 60 };
+
+/* Part of a range below which a move cannot be seen. */
+static const double visible = 1.0 / 1500.0;
+
+/* A chart of the stack: curves of keys over time. */
+struct panel {
+  const char *label;
+  struct bundle bundle;
+  size_t curves;
+  double reach; /* of the background */
+};
+
+/* Names of curves; everything drawn borrows them. */
+struct words {
+  char cells[CELLS_MOST][NAME], pressures[ACTUATORS_MOST][NAME], set_points[ACTUATORS_MOST][NAME];
+};
+
+/* Adds the curve of `key` over time, if the samples have it. */
+static enum status add_curve(const json_t *result, const char *key, struct chart_series like,
+                             struct panel *panel, struct error *error) {
+  struct point *points = NULL;
+  size_t count = 0;
+  double low = INFINITY, high = -INFINITY;
+  enum status status = data_samples(result, "time_s", key, &points, &count, error);
+  if (status != STATUS_OK || count == 0) {
+    free(points);
+    return status;
+  }
+  for (size_t i = 0; i < count; i++) {
+    low = fmin(low, points[i].y);
+    high = fmax(high, points[i].y);
+  }
+  double dx = visible * fabs(points[count - 1].x - points[0].x);
+  count = data_thin(points, count, dx, visible * (high - low));
+  status = bundle_add(&panel->bundle, like, points, count, error);
+  panel->curves++;
+  free(points);
+  return status;
+}
+
+/* The elongations: of the plate, of each cell, and of what it pushes. */
+static enum status add_elongations(const json_t *result, struct words *words, struct panel *panel,
+                                   struct error *error) {
+  struct chart_series like = {.width = 1.6, .name = "plate", .colour = colour_ink};
+  enum status status = STATUS_OK;
+  char key[KEY];
+  for (size_t i = 0; i < CELLS_MOST && status == STATUS_OK; i++) {
+    struct chart_series cell = {.width = 1.4,
+                                .dash = i % 2 ? DASH_LONG : DASH_SOLID,
+                                .colour = colour_series(i),
+                                .name = words->cells[i]};
+    snprintf(key, sizeof key, "cell_%zu_mm", i + 1);
+    snprintf(words->cells[i], NAME, "cell %zu", i + 1);
+    status = add_curve(result, key, cell, panel, error);
+  }
+  if (status == STATUS_OK) {
+    like.width = 2.2;
+    status = add_curve(result, "h_mm", like, panel, error);
+  }
+  like = (struct chart_series){
+      .width = 1.8, .dash = DASH_SHORT, .name = "load", .colour = colour_notice};
+  return status == STATUS_OK ? add_curve(result, "load_h_mm", like, panel, error) : status;
+}
+
+static enum status add_speeds(const json_t *result, struct panel *panel, struct error *error) {
+  struct chart_series like = {.width = 1.8, .colour = colour_ink};
+  enum status status = add_curve(result, "velocity_m_s", like, panel, error);
+  like = (struct chart_series){.width = 1.6, .dash = DASH_SHORT, .colour = colour_notice};
+  return status == STATUS_OK ? add_curve(result, "load_velocity_m_s", like, panel, error) : status;
+}
+
+/* Set-point and pressure of each actuator; only the first has no number. */
+static enum status add_pressures(const json_t *result, struct words *words, struct panel *panel,
+                                 struct error *error) {
+  const json_t *sample = json_array_get(json_object_get(result, "samples"), 0);
+  bool several = json_object_get(sample, "pressure_2_kPa") != NULL;
+  enum status status = STATUS_OK;
+  char key[2][KEY], number[16] = "", suffix[16] = "";
+  for (size_t a = 0; a < ACTUATORS_MOST && status == STATUS_OK; a++) {
+    snprintf(number, sizeof number, a ? "_%zu" : "", a + 1);
+    snprintf(suffix, sizeof suffix, several ? " %zu" : "", a + 1);
+    snprintf(key[0], KEY, "set_point%s_kPa", number);
+    snprintf(key[1], KEY, "pressure%s_kPa", number);
+    snprintf(words->set_points[a], NAME, "set-point%s", suffix);
+    snprintf(words->pressures[a], NAME, "chamber%s", suffix);
+    struct chart_series like = {.width = 1.4,
+                                .dash = DASH_LONG,
+                                .colour = colour_series(several ? a : 1),
+                                .name = words->set_points[a]};
+    status = add_curve(result, key[0], like, panel, error);
+    like = (struct chart_series){.width = 1.9,
+                                 .colour = several ? colour_series(a) : colour_ink,
+                                 .name = words->pressures[a]};
+    if (status == STATUS_OK) {
+      status = add_curve(result, key[1], like, panel, error);
+    }
+  }
+  return status;
+}
+
+static void measure(struct panel *panel) {
+  for (size_t s = 0; s < panel->bundle.count; s++) {
+    for (size_t i = 0; i < panel->bundle.series[s].count; i++) {
+      panel->reach = fmax(panel->reach, 20 * fabs(panel->bundle.series[s].points[i].y));
+    }
+  }
+  panel->reach = panel->reach > 0 ? panel->reach : 1;
+}
+
+static enum status read_panels(const json_t *result, struct words *words,
+                               struct panel panels[PANELS], struct error *error) {
+  struct chart_series angle = {.width = 1.8, .colour = colour_ink};
+  enum status status = add_elongations(result, words, &panels[0], error);
+  if (status == STATUS_OK) {
+    status = add_speeds(result, &panels[1], error);
+  }
+  if (status == STATUS_OK) {
+    status = add_pressures(result, words, &panels[2], error);
+  }
+  if (status == STATUS_OK) {
+    status = add_curve(result, "bending_angle_deg", angle, &panels[3], error);
+  }
+  for (size_t i = 0; i < PANELS && status == STATUS_OK; i++) {
+    measure(&panels[i]);
+    status = hybrid_add_switches(result, panels[i].reach, i == 0 ? "snap" : NULL, &panels[i].bundle,
+                                 error);
+  }
+  return status;
+}
+
+enum status draw_motion(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                        struct error *error) {
+  static const double with_angle[PANELS] = {0.34, 0.2, 0.26, 0.2};
+  static const double without[PANELS - 1] = {0.42, 0.26, 0.32};
+  struct panel panels[PANELS] = {
+      {.label = "h (mm)"}, {.label = "h' (m/s)"}, {.label = "p (kPa)"}, {.label = "Angle (°)"}};
+  struct chart charts[PANELS];
+  struct words words;
+  char subtitle[DATA_HEADING], notice[DATA_HEADING];
+  (void)count;
+  data_subtitle(&inputs[0], subtitle);
+  data_notice(inputs[0].result, notice);
+  enum status status = read_panels(inputs[0].result, &words, panels, error);
+  size_t shown = panels[3].curves > 0 ? PANELS : PANELS - 1;
+  for (size_t i = 0; i < shown; i++) {
+    charts[i] = (struct chart){.title = "Elongation of plate and cells, speed and pressure",
+                               .subtitle = subtitle,
+                               .notice = notice,
+                               .x_label = "Time (s)",
+                               .y_label = panels[i].label,
+                               .series = panels[i].bundle.series,
+                               .series_count = panels[i].bundle.count,
+                               .empty = "No samples were recorded"};
+  }
+  if (status == STATUS_OK) {
+    chart_draw_stack(charts, shown == PANELS ? with_angle : without, shown, canvas);
+  }
+  for (size_t i = 0; i < PANELS; i++) {
+    bundle_release(&panels[i].bundle);
+  }
+  return status;
+}
