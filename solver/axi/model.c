@@ -303,10 +303,6 @@ const struct axi_mesh *axi_model_mesh(const struct axi_model *model) {
   return model->mesh;
 }
 
-const struct axi_contact *axi_model_contact(const struct axi_model *model) {
-  return model->contact;
-}
-
 const struct axi_geometry *axi_model_geometry(const struct axi_model *model, int element) {
   return &model->geometry[element];
 }

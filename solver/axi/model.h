@@ -12,7 +12,6 @@
 #include "solver/axi/element.h"
 
 struct axi_model;
-struct axi_contact;
 
 struct axi_model_options {
   bool contact; /* of inner edges with inner ones, outer with outer ones, and the axis */
@@ -34,8 +33,6 @@ void axi_model_destroy(struct axi_model *model);
 const struct axi_mesh *axi_model_mesh(const struct axi_model *model);
 /* Of an element, for strains and second variations. Owned by the model. */
 const struct axi_geometry *axi_model_geometry(const struct axi_model *model, int element);
-/* Contact of the surfaces, NULL without; owned by the model. */
-struct axi_contact *axi_model_contact(const struct axi_model *model);
 /* Number of unknowns; with a plate or nodes ahead the last one is h. */
 int axi_model_size(const struct axi_model *model);
 bool axi_model_has_elongation(const struct axi_model *model);
@@ -48,9 +45,9 @@ void axi_model_gather(const struct axi_model *model, const double *u, double *x)
 void axi_element_displacements(const struct axi_mesh *mesh, int element, const double *u,
                                double local[AXI_DOFS]);
 
-/* What touched in the last evaluation (a state's, during a visit); NULL for a model without
- * contact. Owned by the model. */
-const struct axi_contact *axi_model_contact(const struct axi_model *model);
+/* Contact of the surfaces, with what touched in the last evaluation (a state's, during a visit);
+ * NULL for a model without contact. Owned by the model. */
+struct axi_contact *axi_model_contact(const struct axi_model *model);
 
 struct axi_load {
   double pressure;   /* Pa */
