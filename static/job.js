@@ -30,6 +30,7 @@ const CAPTIONS = {
   time: 'Elongation, speed and pressure over time',
   phase: 'Speed against elongation',
   steady: 'Elongation at the end of each held set-point',
+  control: 'Elongation under position control',
   coefficients: 'Identified coefficients with their polynomials',
   fitted: 'Trials, measured and simulated',
   'snap-path': 'Equilibrium under pressure and under axial force',

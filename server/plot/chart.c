@@ -303,21 +303,20 @@ static void draw_spans(const struct panel *panel, struct canvas *canvas) {
   cairo_restore(canvas->cr);
 }
 
-/* The legend in a band above the chart: in the fewest columns that hold all of it, or else in the
- * usual number. */
+/* The legend in a band above the chart, all of it if it can be: in as few columns as make it two
+ * lines high, or as many as there is room for. */
 static struct legend measure_band(const struct panel *panel, struct canvas *canvas) {
-  enum { COLUMNS_MOST = 8 };
+  enum { COLUMNS_MOST = 8, ROWS_GOOD = 2 };
   const struct chart *chart = panel->chart;
   const struct box *area = &panel->frame.area;
-  double width = area->width + panel->beside;
+  double width = area->width + panel->beside, height = 0.45 * area->height;
   size_t usual = chart->series_count > 4 ? 2 : 1;
-  for (size_t columns = usual; columns <= COLUMNS_MOST; columns++) {
-    struct legend legend = legend_measure(canvas, chart, columns, width, 0.45 * area->height);
-    if (legend.complete) {
-      return legend;
-    }
+  struct legend best = legend_measure(canvas, chart, usual, width, height);
+  for (size_t columns = usual + 1; columns <= COLUMNS_MOST && best.rows > ROWS_GOOD; columns++) {
+    struct legend legend = legend_measure(canvas, chart, columns, width, height);
+    best = legend.complete ? legend : best;
   }
-  return legend_measure(canvas, chart, usual, width, 0.45 * area->height);
+  return best;
 }
 
 /* Lays out the chart so that the legend is inside where nothing is, or else in a band above. */

@@ -46,6 +46,9 @@ enum status draw_motion(struct canvas *canvas, const struct plot_input *inputs, 
  * many of them are stretched. */
 enum status draw_phase(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                        struct error *error);
+/* Elongation of a hybrid model under position control with its reference, and its pressures. */
+enum status draw_control(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                         struct error *error);
 /* Elongation of a hybrid model at the end of each held set-point, up and down. */
 enum status draw_steady(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                         struct error *error);

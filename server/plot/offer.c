@@ -115,6 +115,12 @@ const char *offer_steady(const struct plot_input *input) {
              : "fewer than two set-points were held";
 }
 
+const char *offer_control(const struct plot_input *input) {
+  return json_is_object(json_object_get(input->result, "control"))
+             ? NULL
+             : "the set-points were given, not found by a controller";
+}
+
 const char *offer_shapes(const struct plot_input *input) {
   return json_array_size(json_object_get(input->result, "shapes")) > 0 ? NULL
                                                                        : "no shapes were recorded";

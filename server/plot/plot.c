@@ -41,6 +41,7 @@ static const struct entry entries[] = {
     {"time", "hlpv", draw_time, NULL},
     {"phase", "hlpv", draw_phase, NULL},
     {"steady", "hlpv", draw_steady, offer_steady},
+    {"control", "hlpv", draw_control, offer_control},
     {"coefficients", "identify", draw_coefficients, NULL},
     {"fitted", "identify", draw_fitted, NULL},
     {"snap-path", "snap", draw_snap_path, NULL},

@@ -12,10 +12,10 @@
   "trapezoidal, with all four faces inclined by different angles, until nobody can read it"
 
 static const char *const all_plots[] = {
-    "curves",   "metric",    "ranking",      "workspace", "twist",  "mesh",      "suction",
-    "measured", "midline3d", "tip3d",        "angle",     "tip",    "midline",   "contraction",
-    "fit",      "stress",    "time",         "phase",     "steady", "snap-path", "shapes",
-    "held",     "stability", "coefficients", "fitted",    "overlay"};
+    "curves",   "metric",    "ranking",      "workspace", "twist",   "mesh",      "suction",
+    "measured", "midline3d", "tip3d",        "angle",     "tip",     "midline",   "contraction",
+    "fit",      "stress",    "time",         "phase",     "steady",  "snap-path", "shapes",
+    "held",     "stability", "coefficients", "fitted",    "control", "overlay"};
 enum { ALL = sizeof all_plots / sizeof *all_plots };
 
 /* Draws everything that a document may be drawn as: a picture or a refusal, nothing else. */
@@ -69,6 +69,9 @@ START_TEST(malformed_documents) {
       "\"events\":[{\"path\":\"a\",\"type\":\"limit point\",\"h_mm\":0,\"pressure_kPa\":0}]}",
       "{\"shapes\":[{\"regions\":[{\"outline_mm\":[[1e9,1e9],[0,-1e9],[\"x\"]]}]},"
       "{\"regions\":[{\"region\":\"pet\",\"outline_mm\":[[1e-5,0],[1e-5,1e-5]]}]}]}",
+      "{\"control\":{},\"steps\":[7,{\"in_reach\":false,\"start_s\":1e9,\"end_s\":-1e9,\"target_"
+      "mm\":1}],"
+      "\"samples\":[{\"time_s\":-1e9,\"reference_mm\":1e9},{\"reference_mm\":[]}]}",
       "{\"held\":[{\"pressure_kPa\":-1e9,\"force_N\":1e9}],\"published\":"
       "[{\"metric\":\"force_per_pressure_N_per_kPa\",\"value\":1e9}]}",
       "{\"harmonics\":[{\"path\":\"a\",\"pressure_kPa\":1e9,\"negative\":[1,2]},7,"

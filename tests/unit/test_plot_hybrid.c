@@ -140,6 +140,42 @@ START_TEST(a_ladder_needs_two_steps) {
 }
 END_TEST
 
+/* The same under a controller, asked for 30 mm after 2 s and told that 40 mm are the nearest. */
+static json_t *controlled_result(void) {
+  json_t *result = sample_result(481), *sample;
+  size_t index;
+  json_array_foreach(json_object_get(result, "samples"), index, sample) {
+    double time = json_number_value(json_object_get(sample, "time_s"));
+    json_object_set_new(sample, "reference_mm", json_real(time > 2.0 ? 30.0 : 10.0));
+  }
+  json_object_set_new(result, "control", json_object());
+  json_object_set_new(result, "steps",
+                      json_pack("[{s:f, s:f, s:b, s:f}, {s:f, s:f, s:b, s:f}]", "start_s", 0.0,
+                                "end_s", 2.0, "in_reach", 1, "target_mm", 10.0, "start_s", 2.0,
+                                "end_s", 4.0, "in_reach", 0, "target_mm", 40.0));
+  json_object_set_new(result, "model",
+                      json_pack("{s:[{s:{s:f}}]}", "transitions", "when", "h_m", 0.014));
+  return result;
+}
+
+START_TEST(control_shows_what_was_asked_for) {
+  char text[300];
+  json_t *result = controlled_result();
+  ck_assert_str_eq(picture_offered("hlpv", result, text), "time phase steady control");
+  picture_at_all_sizes("control", result, "steps");
+  struct picture picture = picture_of("control", result, NULL);
+  /* of the second half: the reference at 30 mm is below what is nearest, at 40 mm, by a tenth of
+   * the upper chart at least */
+  double reference = picture_mean_y(&picture, 470, 700, ORANGE);
+  double target = picture_mean_y(&picture, 470, 700, 204, 121, 167);
+  ck_assert_msg(target < reference - 20, "%g is not above %g", target, reference);
+  free(picture.rgb);
+  json_object_del(result, "control");
+  ck_assert_int_eq(picture_refuse_one("control", result, NULL), STATUS_NOT_FOUND);
+  json_decref(result);
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("plots: hybrid models");
   TCase *tcase = tcase_create("all");
@@ -150,6 +186,7 @@ int main(void) {
   tcase_add_loop_test(tcase, few_or_damaged_data_are_no_failure, 0, 4);
   tcase_add_test(tcase, many_switches_are_drawn_without_bands);
   tcase_add_test(tcase, a_ladder_needs_two_steps);
+  tcase_add_test(tcase, control_shows_what_was_asked_for);
   suite_add_tcase(suite, tcase);
   SRunner *runner = srunner_create(suite);
   srunner_run_all(runner, CK_NORMAL);
