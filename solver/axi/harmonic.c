@@ -234,7 +234,7 @@ enum status harmonic_quadratic(const struct harmonic *h, const struct harmonic_s
   const struct axi_mesh *mesh = h->mesh;
   for (int e = 0; e < mesh->element_count; e++) {
     if (!harmonic_element(mesh, &h->geometry[e], e, state->u, n, form)) {
-      return harmonic_inverted(e, error);
+      return error_set(error, STATUS_INVERTED, NULL, "element %d is turned inside out", e);
     }
     sum += product(form, HARMONIC_ELEMENT, mesh->element[e].node, v);
   }

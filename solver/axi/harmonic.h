@@ -11,13 +11,14 @@
  * (follower), which has a potential because the volume is closed by plates, by the axis or by the
  * next pair of an endless row.
  *
- * Points in contact keep, at every angle, the stiffness that they have in the meridian; that the
- * surfaces slide around the axis on each other, and turn, is left out, so that folds that touch are
- * known a little worse than the rest. */
+ * A skin bends along the meridian alone. Points in contact keep, at every angle, the stiffness that
+ * they have in the meridian; that the surfaces slide around the axis on each other, and turn, is
+ * left out, so that folds that touch are known a little worse than the rest. */
 #ifndef PNEULAB_AXI_HARMONIC_H
 #define PNEULAB_AXI_HARMONIC_H
 
 #include "solver/axi/contact.h"
+#include "solver/axi/skin.h"
 
 enum { HARMONIC_PARTS = 3, HARMONIC_TOUCH_NODES = 6 };
 
@@ -44,6 +45,7 @@ struct harmonic_state {
   int touch_count;
   struct axi_contact *contact; /* of the surfaces, NULL without; evaluated anew */
   double elongation;           /* h of the state, for contact with the next period */
+  const struct axi_skin *skin; /* NULL without */
 };
 
 struct harmonic;
@@ -69,7 +71,7 @@ enum status harmonic_mode(struct harmonic *harmonic, const struct harmonic_state
                           double *mode, double *stiffness, struct error *error);
 
 /* *value = v K v (J per m2) of any perturbation v[node_count x 3], whatever the plates and ties
- * hold: twice the second-order change of W - p V, contact left out. STATUS_INVERTED. */
+ * hold: twice the second-order change of W - p V, contact and skin left out. STATUS_INVERTED. */
 enum status harmonic_quadratic(const struct harmonic *harmonic, const struct harmonic_state *state,
                                int n, const double *v, double *value, struct error *error);
 

@@ -183,16 +183,36 @@ void harmonic_touch(const struct harmonic_touch *touch, int n, double *form) {
   }
 }
 
-void harmonic_contact(const struct axi_touch *touch, int n, double *form) {
-  int count = touch->master < 0 ? AXI_EDGE_NODES : TOUCH_NODES, width = HARMONIC_PARTS * count;
-  const double *packed = touch->packed;
+/* A tangent over (r, z) of the nodes, upper triangle by rows over `room` nodes of which `count` are
+ * used, becomes a form over all components. */
+static void unpack(const double *packed, int room, int count, double factor, double *form) {
+  int width = HARMONIC_PARTS * count;
   memset(form, 0, sizeof *form * (size_t)width * (size_t)width);
-  for (int i = 0; i < TOUCH_DOFS; i++) {
-    for (int j = i; j < TOUCH_DOFS; j++, packed++) {
+  for (int i = 0; i < 2 * room; i++) {
+    for (int j = i; j < 2 * room; j++, packed++) {
       int row = HARMONIC_PARTS * (i / 2) + i % 2, column = HARMONIC_PARTS * (j / 2) + j % 2;
       if (j < 2 * count) {
-        form[width * row + column] = form[width * column + row] = (n == 0 ? 1 : 0.5) * *packed;
+        form[width * row + column] = form[width * column + row] = factor * *packed;
       }
     }
   }
+}
+
+void harmonic_contact(const struct axi_touch *touch, int n, double *form) {
+  int count = touch->master < 0 ? AXI_EDGE_NODES : TOUCH_NODES;
+  unpack(touch->packed, TOUCH_NODES, count, n == 0 ? 1 : 0.5, form);
+}
+
+bool harmonic_skin(const struct axi_mesh *mesh, const struct axi_turning *turning, const double *u,
+                   int n, double *form) {
+  double x[SKIN_NODES][2], energy, force[SKIN_DOFS], packed[SKIN_PACKED];
+  for (int i = 0; i < 2 * turning->count; i++) {
+    int at = 2 * turning->node[i / 2] + i % 2;
+    x[i / 2][i % 2] = mesh->position[at] + u[at];
+  }
+  if (!axi_skin_evaluate(turning, x, &energy, force, packed)) {
+    return false;
+  }
+  unpack(packed, turning->count, turning->count, n == 0 ? 1 : 0.5, form);
+  return true;
 }

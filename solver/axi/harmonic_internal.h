@@ -29,6 +29,11 @@ void harmonic_touch(const struct harmonic_touch *touch, int n, double *form);
  * one. */
 void harmonic_contact(const struct axi_touch *touch, int n, double *form);
 
+/* Of a turning of the skin at the displacements u of all nodes: HARMONIC_PARTS x count unknowns.
+ * False when an edge has folded back. */
+bool harmonic_skin(const struct axi_mesh *mesh, const struct axi_turning *turning, const double *u,
+                   int n, double *form);
+
 /* A component of a node is at most the sum of two unknowns: that of its master and h. */
 enum { HARMONIC_TERMS = 2, HARMONIC_KINDS = 3 };
 
@@ -62,7 +67,7 @@ struct harmonic {
 };
 
 /* The system for n >= 0: the one kept by h, or made into own[] (cleared at first) when there are
- * touching points; contact is evaluated before. STATUS_NO_MEMORY. */
+ * springs, skins or points in contact; contact is evaluated before. STATUS_NO_MEMORY. */
 enum status harmonic_system_get(struct harmonic *h, const struct harmonic_state *state, int n,
                                 struct harmonic_system own[HARMONIC_KINDS],
                                 struct harmonic_system **out, struct error *error);
@@ -74,8 +79,5 @@ enum status harmonic_system_factor(const struct harmonic *h, struct harmonic_sys
                                    int *negative, struct error *error);
 
 void harmonic_systems_release(struct harmonic_system system[HARMONIC_KINDS]);
-
-/* The error of an element of the base state that is turned inside out. */
-enum status harmonic_inverted(int element, struct error *error);
 
 #endif

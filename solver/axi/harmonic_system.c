@@ -114,8 +114,15 @@ static struct place clique_place(const struct harmonic *h, const struct harmonic
     memcpy(p.node, state->touch[clique].node, sizeof state->touch[clique].node);
     return p;
   }
+  clique -= state->touch_count;
+  int skin = state->skin ? state->skin->count : 0;
+  if (clique < skin) {
+    p.count = state->skin->turning[clique].count;
+    memcpy(p.node, state->skin->turning[clique].node, sizeof state->skin->turning->node);
+    return p;
+  }
   const struct axi_contact *contact = state->contact;
-  const struct axi_touch *touch = &contact->touch[clique - state->touch_count];
+  const struct axi_touch *touch = &contact->touch[clique - skin];
   memcpy(p.node, contact->edge[touch->slave].node, sizeof contact->edge->node);
   if (touch->master >= 0) {
     p.count = TOUCH_NODES;
@@ -158,6 +165,7 @@ static enum status gather_cliques(const struct harmonic *h, const struct harmoni
                                   struct harmonic_system *s) {
   int dofs[CLIQUE_MAX];
   s->clique_count = h->mesh->element_count + h->mesh->inner_count + state->touch_count +
+                    (state->skin ? state->skin->count : 0) +
                     (state->contact ? state->contact->touch_count : 0);
   s->start = malloc(sizeof *s->start * ((size_t)s->clique_count + 1));
   s->values = malloc(sizeof *s->values * ((size_t)s->clique_count + 1));
@@ -292,33 +300,44 @@ static void pack(struct harmonic_system *s, int clique, const struct place *plac
   }
 }
 
-enum status harmonic_inverted(int element, struct error *error) {
-  return error_set(error, STATUS_INVERTED, NULL,
-                   "element %d of the axisymmetric state is turned inside out", element);
+/* The form of a clique; false when the base state is folded or turned inside out there. */
+static bool clique_form(const struct harmonic *h, const struct harmonic_state *state, int clique,
+                        int n, double *form) {
+  const struct axi_mesh *mesh = h->mesh;
+  if (clique < mesh->element_count) {
+    return harmonic_element(mesh, &h->geometry[clique], clique, state->u, n, form);
+  }
+  clique -= mesh->element_count;
+  if (clique < mesh->inner_count) {
+    harmonic_edge(mesh, clique, state->u, state->pressure, n, form);
+    return true;
+  }
+  clique -= mesh->inner_count;
+  if (clique < state->touch_count) {
+    harmonic_touch(&state->touch[clique], n, form);
+    return true;
+  }
+  clique -= state->touch_count;
+  int skin = state->skin ? state->skin->count : 0;
+  if (clique < skin) {
+    return harmonic_skin(mesh, &state->skin->turning[clique], state->u, n, form);
+  }
+  harmonic_contact(&state->contact->touch[clique - skin], n, form);
+  return true;
 }
 
 enum status harmonic_system_factor(const struct harmonic *h, struct harmonic_system *s,
                                    const struct harmonic_state *state, int n, double shift,
                                    int *negative, struct error *error) {
-  const struct axi_mesh *mesh = h->mesh;
   double form[HARMONIC_ELEMENT * HARMONIC_ELEMENT];
   for (int c = 0; c < s->clique_count; c++) {
     struct place place = clique_place(h, state, c);
-    int edge = c - mesh->element_count, touch = edge - mesh->inner_count;
-    const double *volume = NULL;
-    if (edge < 0) {
-      volume = h->volume + (size_t)c * AXI_NODES;
-      if (!harmonic_element(mesh, &h->geometry[c], c, state->u, n, form)) {
-        return harmonic_inverted(c, error);
-      }
-    } else if (touch < 0) {
-      harmonic_edge(mesh, edge, state->u, state->pressure, n, form);
-    } else if (touch < state->touch_count) {
-      harmonic_touch(&state->touch[touch], n, form);
-    } else {
-      harmonic_contact(&state->contact->touch[touch - state->touch_count], n, form);
+    bool element = c < h->mesh->element_count;
+    if (!clique_form(h, state, c, n, form)) {
+      return error_set(error, STATUS_INVERTED, NULL,
+                       "the axisymmetric state is turned inside out near node %d", place.node[0]);
     }
-    pack(s, c, &place, form, volume, shift);
+    pack(s, c, &place, form, element ? h->volume + (size_t)c * AXI_NODES : NULL, shift);
   }
   *negative = s->dof_count == 0 ? 0 : ldlt_factor(s->ldlt, (const double *const *)s->values);
   return STATUS_OK;
@@ -328,8 +347,9 @@ enum status harmonic_system_get(struct harmonic *h, const struct harmonic_state 
                                 struct harmonic_system own[HARMONIC_KINDS],
                                 struct harmonic_system **out, struct error *error) {
   int kind = kind_of(n);
-  bool touches = state->touch_count > 0 || (state->contact && state->contact->touch_count > 0);
-  *out = touches ? &own[kind] : &h->system[kind];
+  bool more =
+      state->touch_count > 0 || state->skin || (state->contact && state->contact->touch_count > 0);
+  *out = more ? &own[kind] : &h->system[kind];
   return (*out)->term ? STATUS_OK : system_create(h, state, kind, *out, error);
 }
 

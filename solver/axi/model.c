@@ -307,6 +307,10 @@ const struct axi_geometry *axi_model_geometry(const struct axi_model *model, int
   return &model->geometry[element];
 }
 
+const struct axi_skin *axi_model_skin(const struct axi_model *model) {
+  return model->skin.count > 0 ? &model->skin : NULL;
+}
+
 struct axi_contact *axi_model_contact(const struct axi_model *model) {
   return model->contact;
 }

@@ -12,6 +12,7 @@
 #include "solver/axi/element.h"
 
 struct axi_model;
+struct axi_skin;
 
 struct axi_model_options {
   bool contact; /* of inner edges with inner ones, outer with outer ones, and the axis */
@@ -48,6 +49,9 @@ void axi_element_displacements(const struct axi_mesh *mesh, int element, const d
 /* Contact of the surfaces, with what touched in the last evaluation (a state's, during a visit);
  * NULL for a model without contact. Owned by the model. */
 struct axi_contact *axi_model_contact(const struct axi_model *model);
+
+/* The skin, NULL without. Owned by the model. */
+const struct axi_skin *axi_model_skin(const struct axi_model *model);
 
 struct axi_load {
   double pressure;   /* Pa */

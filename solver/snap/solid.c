@@ -111,6 +111,7 @@ static enum status solid_harmonics(void *self, const struct axi_state *state, in
                                 .pressure = state->pressure,
                                 .elongation = state->elongation,
                                 .contact = axi_model_contact(solid->model),
+                                .skin = axi_model_skin(solid->model),
                                 .touch = &ring,
                                 .touch_count = solid->spec->ends == SNAP_PERIODIC};
   return status == STATUS_OK ? harmonic_negative(solid->harmonic, &base, 0, last, count, error)
