@@ -1,6 +1,7 @@
 #include "solver/run.h"
 
 #include "solver/base/clock.h"
+#include "solver/bistable/result.h"
 #include "solver/estimate.h"
 #include "solver/fe/warm.h"
 #include "solver/identify/identify_job.h"
@@ -154,6 +155,10 @@ static enum status run_other(const struct job_spec *spec, const struct run_optio
   }
   if (spec->kind == JOB_IDENTIFY) {
     return identify_job(spec, options->cancelled, document, ending, error);
+  }
+  if (spec->kind == JOB_BISTABLE) {
+    struct result_bistable_options bistable = {options->events, options->cancelled};
+    return result_bistable(spec, &bistable, document, ending, error);
   }
   if (spec->kind == JOB_HLPV) {
     struct result_hlpv_options hlpv = {.events = options->events, .cancelled = options->cancelled};

@@ -21,7 +21,8 @@ static const struct slot slots[] = {{NULL, "data", true},
                                     {"measured", "data", true},
                                     {"input", "data", true},
                                     {"tables", "data", true},
-                                    {NULL, "base", false}};
+                                    {NULL, "base", false},
+                                    {NULL, "snap", false}};
 
 enum { SLOTS = sizeof slots / sizeof *slots, EMBED_LEVELS = 2 };
 

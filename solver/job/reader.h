@@ -118,6 +118,17 @@ enum status reader_snap(const struct reader *reader, const json_t *document, str
 enum status reader_identify(const struct reader *reader, const json_t *document,
                             struct job_spec *job);
 
+/* Fills name, timeout and bistable (and, of a job with one, snap) of the job, as reader_hlpv does.
+ */
+enum status reader_bistable(const struct reader *reader, const json_t *document,
+                            struct job_spec *job);
+
+struct supply_spec;
+
+/* Fills *supply from a value at `pointer`. STATUS_OK or INVALID. */
+enum status reader_pneumatics(const struct reader *reader, const json_t *value, const char *pointer,
+                              struct supply_spec *supply);
+
 struct hlpv_mode;
 
 /* Fills the stiffness of a mode, and with a slope its rest, from the states of rest in `value`, at

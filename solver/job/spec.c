@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "solver/base/text.h"
+#include "solver/job/bistable.h"
 #include "solver/job/embed.h"
 #include "solver/job/hlpv.h"
 #include "solver/job/identify.h"
@@ -258,6 +259,7 @@ static enum status read_kind(const struct job_reader *job_reader, const struct r
          : strcmp(kind, "hlpv") == 0           ? reader_hlpv(reader, document, spec)
          : strcmp(kind, "identify") == 0       ? reader_identify(reader, document, spec)
          : strcmp(kind, "snap") == 0           ? reader_snap(reader, document, spec)
+         : strcmp(kind, "bistable") == 0       ? reader_bistable(reader, document, spec)
                                                : read_response(reader, document, spec);
 }
 
@@ -320,6 +322,7 @@ void job_spec_release(struct job_spec *spec) {
   hlpv_spec_destroy(spec->hlpv);
   free(spec->identify);
   free(spec->snap);
+  bistable_spec_destroy(spec->bistable);
   *spec = (struct job_spec){.kind = JOB_RESPONSE};
 }
 

@@ -15,7 +15,8 @@ enum job_kind {
   JOB_MATERIAL_CURVE,
   JOB_HLPV,
   JOB_IDENTIFY,
-  JOB_SNAP
+  JOB_SNAP,
+  JOB_BISTABLE
 };
 
 /* ---- material --------------------------------------------------------------------------- */
@@ -262,6 +263,8 @@ struct job_spec {
   struct hlpv_spec *hlpv; /* of an hlpv job, else NULL; owned and borrowed as document */
   struct identify_spec *identify; /* likewise of an identify job */
   struct snap_spec *snap; /* of a snap job, else NULL; likewise */
+  struct bistable_spec *bistable; /* of a bistable job, else NULL; likewise. One whose law comes
+                                   * from a snap job has that in `snap` */
   bool contact;
   struct plane_spec plane[PLANES_MAX];
   int plane_count;

@@ -3,6 +3,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "solver/job/bistable.h"
 #include "solver/job/hlpv.h"
 #include "solver/job/spec.h"
 #include "tests/fuzz/fuzz.h"
@@ -25,6 +26,10 @@ static bool is_complete(const struct job_spec *spec) {
   }
   if (spec->kind == JOB_HLPV) {
     return spec->hlpv->mode_count >= 1 && spec->hlpv->mass > 0.0 && spec->hlpv->end > 0.0;
+  }
+  if (spec->kind == JOB_BISTABLE) {
+    return spec->bistable->cell_count >= 1 && spec->bistable->cell[0].mass > 0.0 &&
+           spec->bistable->actuator_count >= 1 && spec->bistable->end > 0.0;
   }
   if (spec->kind == JOB_STUDY) {
     return json_is_object(spec->document) && spec->timeout_s > 0.0;
