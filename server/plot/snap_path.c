@@ -6,7 +6,7 @@
 #include "server/plot/draw.h"
 #include "server/plot/snap.h"
 
-enum { PANELS = 2, LABELS_MOST = 12, KINDS = 5 };
+enum { PANELS = 2, LABELS_MOST = 12, KINDS = 5, PATHS_MOST = 4 };
 
 /* How an event is marked. */
 struct kind {
@@ -30,13 +30,19 @@ struct sheet {
   const char *y_key, *y_label, *unit;
   struct bundle bundle;
   struct chart_label labels[LABELS_MOST];
-  size_t label_count;
+  size_t label_count, paths;
 };
 
 /* Writes beside an event what it is at. Trigger and release are called so. */
 static void label_event(const json_t *metrics, const char *type, struct point at,
                         struct sheet *sheet) {
   char number[TICKS_TEXT];
+  for (size_t i = 0; i < sheet->label_count; i++) {
+    const struct point *other = &sheet->labels[i].at;
+    if (fabs(other->x - at.x) < 0.02 && fabs(other->y - at.y) < 0.02) {
+      return; /* where two paths meet */
+    }
+  }
   if (sheet->label_count == LABELS_MOST) {
     return;
   }
@@ -83,31 +89,43 @@ static enum status add_events(const json_t *result, const struct kind *kind, str
   return status;
 }
 
-/* Reads the paths and events of one chart. A second path under the same load has a colour of its
- * own and its name in the legend. */
-static enum status read_sheet(const json_t *result, struct sheet *sheet, struct error *error) {
-  static const size_t colours[] = {0, 4, 6};
-  enum status status = STATUS_OK;
-  size_t index, drawn = 0;
+/* The paths under the load of a chart. */
+static size_t find_paths(const json_t *result, enum snap_load load,
+                         const json_t *found[PATHS_MOST]) {
+  size_t index, count = 0;
   const json_t *path;
   json_array_foreach(json_object_get(result, "paths"), index, path) {
-    if (snap_load_of(path) != sheet->load || status != STATUS_OK) {
-      continue;
+    if (snap_load_of(path) == load && count < PATHS_MOST &&
+        json_array_size(json_object_get(path, "points")) > 1) {
+      found[count++] = path;
     }
-    const char *name = json_string_value(json_object_get(path, "name"));
-    struct snap_look look = {.x_key = "h_mm",
-                             .y_key = sheet->y_key,
-                             .colour = colour_series(colours[drawn < 3 ? drawn : 2]),
-                             .stable_name = drawn ? name : "stable",
-                             .unstable_name = drawn ? NULL : "unstable"};
-    bool named[2] = {false, false};
-    status = snap_add_path(&sheet->bundle, path, &look, named, error);
-    drawn++;
+  }
+  return count;
+}
+
+/* Reads the paths and events of one chart. Several paths have a colour and a name each. */
+static enum status read_sheet(const json_t *result, struct sheet *sheet, struct error *error) {
+  static const size_t colours[PATHS_MOST] = {0, 4, 6, 5};
+  const json_t *paths[PATHS_MOST];
+  enum status status = STATUS_OK;
+  size_t count = find_paths(result, sheet->load, paths);
+  bool unstable_named = false;
+  for (size_t i = 0; i < count && status == STATUS_OK; i++) {
+    struct snap_look look = {
+        .x_key = "h_mm",
+        .y_key = sheet->y_key,
+        .colour = colour_series(colours[i]),
+        .stable_name = count > 1 ? json_string_value(json_object_get(paths[i], "name")) : "stable",
+        .unstable_name = "unstable"};
+    bool named[2] = {unstable_named, false};
+    status = snap_add_path(&sheet->bundle, paths[i], &look, named, error);
+    unstable_named = named[0];
   }
   for (size_t k = 0; k < KINDS && status == STATUS_OK; k++) {
     status = add_events(result, &kinds[k], sheet, error);
   }
-  return status == STATUS_OK && drawn > 0 ? bundle_add_zero(&sheet->bundle, error) : status;
+  sheet->paths = count;
+  return status == STATUS_OK && count > 0 ? bundle_add_zero(&sheet->bundle, error) : status;
 }
 
 enum status draw_snap_path(struct canvas *canvas, const struct plot_input *inputs, size_t count,
@@ -125,7 +143,8 @@ enum status draw_snap_path(struct canvas *canvas, const struct plot_input *input
   data_notice(inputs[0].result, notice);
   for (size_t i = 0; i < PANELS && status == STATUS_OK; i++) {
     status = read_sheet(inputs[0].result, &sheets[i], error);
-    charts[i] = (struct chart){.title = "Equilibrium under pressure, and under axial force",
+    charts[i] = (struct chart){.title = i == 0 ? "Equilibrium under pressure and under axial force"
+                                               : "Equilibrium under axial force",
                                .subtitle = subtitle,
                                .notice = notice,
                                .x_label = "Elongation from the compressed state (mm)",
@@ -136,8 +155,13 @@ enum status draw_snap_path(struct canvas *canvas, const struct plot_input *input
                                .label_count = sheets[i].label_count,
                                .empty = empty[i]};
   }
-  if (status == STATUS_OK) {
+  if (status == STATUS_OK && sheets[1].paths == 0) {
+    charts[0].title = "Equilibrium under pressure";
+  }
+  if (status == STATUS_OK && sheets[0].paths > 0 && sheets[1].paths > 0) {
     chart_draw_stack(charts, shares, PANELS, canvas);
+  } else if (status == STATUS_OK) {
+    chart_draw(&charts[sheets[0].paths == 0], canvas);
   }
   for (size_t i = 0; i < PANELS; i++) {
     bundle_release(&sheets[i].bundle);

@@ -13,6 +13,7 @@ enum { PATHS_MOST = 3, HARMONICS_MOST = 64 };
 struct garland {
   const json_t *list; /* of the document: states of all paths */
   const char *path;
+  double sense; /* of its pressures: 1 when they rise from the first state on, -1 when they fall */
   size_t harmonics;
   double reached_kPa;              /* last state before the axisymmetric limit, or of all */
   double lost_kPa[HARMONICS_MOST]; /* middle of the step in which it is lost; NaN: it is not */
@@ -23,21 +24,42 @@ static bool is_lost(const json_t *state, size_t harmonic) {
   return data_element(json_object_get(state, "negative"), harmonic) > 0;
 }
 
+/* Whether a state is of the path; its pressure. */
+static bool is_of_path(const struct garland *g, const json_t *state, double *pressure) {
+  const char *path = json_string_value(json_object_get(state, "path"));
+  *pressure = data_number(state, "pressure_kPa");
+  return path && strcmp(path, g->path) == 0 && isfinite(*pressure);
+}
+
+static double find_sense(const struct garland *g) {
+  double first = NAN, pressure;
+  size_t index;
+  const json_t *state;
+  json_array_foreach(g->list, index, state) {
+    if (is_of_path(g, state, &pressure)) {
+      if (pressure != first && isfinite(first)) {
+        return pressure > first ? 1 : -1;
+      }
+      first = pressure;
+    }
+  }
+  return 1;
+}
+
 /* Goes along the path until the axisymmetric harmonic itself is lost: beyond its limit point the
- * pressure falls, and nothing there is reached by inflating. */
+ * pressure turns back, and nothing there is reached by inflating. */
 static void read_garland(struct garland *g) {
-  double before = NAN;
+  double before = NAN, pressure;
   size_t index;
   const json_t *state;
   for (size_t n = 0; n < HARMONICS_MOST; n++) {
     g->lost_kPa[n] = NAN;
   }
+  g->sense = find_sense(g);
   g->reached_kPa = NAN;
   json_array_foreach(g->list, index, state) {
-    const char *path = json_string_value(json_object_get(state, "path"));
-    double pressure = data_number(state, "pressure_kPa");
     size_t count = json_array_size(json_object_get(state, "negative"));
-    if (!path || strcmp(path, g->path) != 0 || !isfinite(pressure)) {
+    if (!is_of_path(g, state, &pressure)) {
       continue;
     }
     count = count < HARMONICS_MOST ? count : HARMONICS_MOST;
@@ -45,9 +67,10 @@ static void read_garland(struct garland *g) {
     double from = isfinite(before) ? before : pressure;
     for (size_t n = 0; n < count; n++) {
       if (isnan(g->lost_kPa[n]) && is_lost(state, n)) {
-        double to = fmax(from, pressure); /* beyond the limit point the pressure has fallen */
+        /* beyond the limit point the pressure has turned back */
+        double to = g->sense * fmax(g->sense * from, g->sense * pressure);
         g->lost_kPa[n] = (from + to) / 2;
-        g->half_width_kPa[n] = (to - from) / 2;
+        g->half_width_kPa[n] = fabs(to - from) / 2;
       }
     }
     if (!isnan(g->lost_kPa[0])) {
@@ -58,8 +81,9 @@ static void read_garland(struct garland *g) {
 }
 
 /* Adds the pressures at which harmonics are lost, and those up to which they are not. */
-static enum status add_garland(const struct garland *g, size_t place, double *errors,
+static enum status add_garland(const struct garland *g, size_t place, const char *kept_name,
                                struct bundle *bundle, struct error *error) {
+  double errors[HARMONICS_MOST];
   struct point lost[HARMONICS_MOST], kept[HARMONICS_MOST];
   size_t lost_count = 0, kept_count = 0;
   for (size_t n = 0; n < g->harmonics; n++) {
@@ -77,7 +101,7 @@ static enum status add_garland(const struct garland *g, size_t place, double *er
   enum status status = bundle_add(bundle, like, lost, lost_count, error);
   like.hollow = true;
   like.errors = NULL;
-  like.name = place ? NULL : "not lost up to here";
+  like.name = kept_name;
   return status == STATUS_OK ? bundle_add(bundle, like, kept, kept_count, error) : status;
 }
 
@@ -104,16 +128,24 @@ static bool label_first(const struct garland *g, struct chart_label *label) {
   char number[TICKS_TEXT];
   for (size_t n = 0; n < g->harmonics; n++) {
     if (isfinite(g->lost_kPa[n]) &&
-        (first == HARMONICS_MOST || g->lost_kPa[n] < g->lost_kPa[first])) {
+        (first == HARMONICS_MOST || g->sense * g->lost_kPa[n] < g->sense * g->lost_kPa[first])) {
       first = n;
     }
   }
   if (first == HARMONICS_MOST) {
     return false;
   }
+  size_t last = first;
+  while (last + 1 < g->harmonics && g->lost_kPa[last + 1] == g->lost_kPa[first]) {
+    last++; /* in the same step */
+  }
   ticks_number(g->lost_kPa[first], 3, number);
   label->at = (struct point){(double)first, g->lost_kPa[first]};
-  snprintf(label->text, sizeof label->text, "n = %zu at %s kPa", first, number);
+  if (last > first) {
+    snprintf(label->text, sizeof label->text, "n = %zu to %zu at %s kPa", first, last, number);
+  } else {
+    snprintf(label->text, sizeof label->text, "n = %zu at %s kPa", first, number);
+  }
   return true;
 }
 
@@ -123,7 +155,7 @@ enum status draw_stability(struct canvas *canvas, const struct plot_input *input
   struct garland garlands[PATHS_MOST];
   struct bundle bundle = {.series = NULL};
   struct chart_label labels[PATHS_MOST];
-  double errors[PATHS_MOST][HARMONICS_MOST];
+  char names[PATHS_MOST][120];
   size_t label_count = 0;
   char subtitle[DATA_HEADING], notice[DATA_HEADING];
   enum status status = STATUS_OK;
@@ -132,7 +164,8 @@ enum status draw_stability(struct canvas *canvas, const struct plot_input *input
   for (size_t i = 0; i < paths && status == STATUS_OK; i++) {
     read_garland(&garlands[i]);
     label_count += label_first(&garlands[i], &labels[label_count]);
-    status = add_garland(&garlands[i], i, errors[i], &bundle, error);
+    snprintf(names[i], sizeof names[i], "%.60s, not lost up to here", garlands[i].path);
+    status = add_garland(&garlands[i], i, names[i], &bundle, error);
   }
   data_subtitle(&inputs[0], subtitle);
   data_notice(result, notice);

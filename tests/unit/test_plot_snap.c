@@ -119,6 +119,34 @@ START_TEST(the_first_loss_is_the_lowest) {
 }
 END_TEST
 
+/* Under vacuum the pressures fall: what is lost first is the highest mark. */
+START_TEST(losses_under_vacuum) {
+  json_t *snap = plot_sample_snap(35), *state;
+  size_t index;
+  json_array_foreach(json_object_get(snap, "harmonics"), index, state) {
+    double pressure = json_number_value(json_object_get(state, "pressure_kPa"));
+    json_object_set_new(state, "pressure_kPa", json_real(-pressure));
+  }
+  struct picture picture = picture_of("stability", snap, NULL);
+  double ninth = picture_mean_y(&picture, 570, 600, BLUE);
+  double fifth = picture_mean_y(&picture, 350, 385, BLUE);
+  ck_assert_msg(ninth < fifth - 20, "%g is not above %g", ninth, fifth);
+  free(picture.rgb);
+  json_decref(snap);
+}
+END_TEST
+
+/* Without a path under axial force the one under pressure has the whole sheet. */
+START_TEST(one_load_alone) {
+  json_t *snap = plot_sample_snap(35);
+  json_array_remove(json_object_get(snap, "paths"), 0);
+  struct picture picture = picture_of("snap-path", snap, NULL);
+  ck_assert_double_gt(picture_mean_y(&picture, 500, 620, ORANGE), 330);
+  free(picture.rgb);
+  json_decref(snap);
+}
+END_TEST
+
 static void draw_four(json_t *results[4], const char *name) {
   struct plot_input inputs[4];
   for (size_t i = 0; i < 4; i++) {
@@ -178,6 +206,8 @@ int main(void) {
   tcase_add_test(tcase, shapes_are_mirrored_and_true);
   tcase_add_test(tcase, the_published_force_when_there_is_one);
   tcase_add_test(tcase, the_first_loss_is_the_lowest);
+  tcase_add_test(tcase, losses_under_vacuum);
+  tcase_add_test(tcase, one_load_alone);
   tcase_add_test(tcase, four_designs_in_one_picture);
   tcase_add_test(tcase, elongation_without_a_ratio);
   suite_add_tcase(suite, tcase);
