@@ -142,9 +142,10 @@ static bool label_first(const struct garland *g, struct chart_label *label) {
   ticks_number(g->lost_kPa[first], 3, number);
   label->at = (struct point){(double)first, g->lost_kPa[first]};
   if (last > first) {
-    snprintf(label->text, sizeof label->text, "n = %zu to %zu at %s kPa", first, last, number);
+    snprintf(label->text, sizeof label->text, "n = %d to %d at %.16s kPa", (int)first, (int)last,
+             number);
   } else {
-    snprintf(label->text, sizeof label->text, "n = %zu at %s kPa", first, number);
+    snprintf(label->text, sizeof label->text, "n = %d at %.16s kPa", (int)first, number);
   }
   return true;
 }
