@@ -216,36 +216,8 @@ void harmonic_destroy(struct harmonic *h) {
 
 /* ---- the form of any perturbation ---- */
 
-static double product(const double *form, int width, const int *node, const double *v) {
-  double sum = 0;
-  for (int i = 0; i < width; i++) {
-    for (int j = 0; j < width; j++) {
-      sum += v[HARMONIC_PARTS * node[i / HARMONIC_PARTS] + i % HARMONIC_PARTS] *
-             form[width * i + j] *
-             v[HARMONIC_PARTS * node[j / HARMONIC_PARTS] + j % HARMONIC_PARTS];
-    }
-  }
-  return sum;
-}
-
 enum status harmonic_quadratic(const struct harmonic *h, const struct harmonic_state *state, int n,
                                const double *v, double *value, struct error *error) {
-  double form[HARMONIC_ELEMENT * HARMONIC_ELEMENT], sum = 0;
-  const struct axi_mesh *mesh = h->mesh;
-  for (int e = 0; e < mesh->element_count; e++) {
-    if (!harmonic_element(mesh, &h->geometry[e], e, state->u, n, form)) {
-      return error_set(error, STATUS_INVERTED, NULL, "element %d is turned inside out", e);
-    }
-    sum += product(form, HARMONIC_ELEMENT, mesh->element[e].node, v);
-  }
-  for (int e = 0; e < mesh->inner_count; e++) {
-    harmonic_edge(mesh, e, state->u, state->pressure, n, form);
-    sum += product(form, HARMONIC_EDGE, mesh->inner[e].node, v);
-  }
-  for (int k = 0; k < state->touch_count; k++) {
-    harmonic_touch(&state->touch[k], n, form);
-    sum += product(form, HARMONIC_PARTS * state->touch[k].count, state->touch[k].node, v);
-  }
-  *value = sum;
-  return STATUS_OK;
+  enum status status = find_contact(state, error);
+  return status == STATUS_OK ? harmonic_system_product(h, state, n, v, value, error) : status;
 }

@@ -71,7 +71,8 @@ enum status harmonic_mode(struct harmonic *harmonic, const struct harmonic_state
                           double *mode, double *stiffness, struct error *error);
 
 /* *value = v K v (J per m2) of any perturbation v[node_count x 3], whatever the plates and ties
- * hold: twice the second-order change of W - p V, contact and skin left out. STATUS_INVERTED. */
+ * hold, without a change of h: twice the second-order change of the potential. STATUS_INVERTED,
+ * STATUS_NO_MEMORY. */
 enum status harmonic_quadratic(const struct harmonic *harmonic, const struct harmonic_state *state,
                                int n, const double *v, double *value, struct error *error);
 

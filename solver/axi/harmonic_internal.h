@@ -78,6 +78,10 @@ enum status harmonic_system_factor(const struct harmonic *h, struct harmonic_sys
                                    const struct harmonic_state *state, int n, double shift,
                                    int *negative, struct error *error);
 
+/* *value = v K v over all components of the nodes; contact is evaluated before. STATUS_INVERTED. */
+enum status harmonic_system_product(const struct harmonic *h, const struct harmonic_state *state,
+                                    int n, const double *v, double *value, struct error *error);
+
 void harmonic_systems_release(struct harmonic_system system[HARMONIC_KINDS]);
 
 #endif

@@ -161,12 +161,16 @@ static int clique_dofs(const struct harmonic_system *s, const struct place *p, i
   return count;
 }
 
+static int clique_count(const struct harmonic *h, const struct harmonic_state *state) {
+  return h->mesh->element_count + h->mesh->inner_count + state->touch_count +
+         (state->skin ? state->skin->count : 0) +
+         (state->contact ? state->contact->touch_count : 0);
+}
+
 static enum status gather_cliques(const struct harmonic *h, const struct harmonic_state *state,
                                   struct harmonic_system *s) {
   int dofs[CLIQUE_MAX];
-  s->clique_count = h->mesh->element_count + h->mesh->inner_count + state->touch_count +
-                    (state->skin ? state->skin->count : 0) +
-                    (state->contact ? state->contact->touch_count : 0);
+  s->clique_count = clique_count(h, state);
   s->start = malloc(sizeof *s->start * ((size_t)s->clique_count + 1));
   s->values = malloc(sizeof *s->values * ((size_t)s->clique_count + 1));
   if (!s->start || !s->values) {
@@ -326,6 +330,11 @@ static bool clique_form(const struct harmonic *h, const struct harmonic_state *s
   return true;
 }
 
+static enum status inverted(const struct place *place, struct error *error) {
+  return error_set(error, STATUS_INVERTED, NULL,
+                   "the axisymmetric state is turned inside out near node %d", place->node[0]);
+}
+
 enum status harmonic_system_factor(const struct harmonic *h, struct harmonic_system *s,
                                    const struct harmonic_state *state, int n, double shift,
                                    int *negative, struct error *error) {
@@ -334,12 +343,33 @@ enum status harmonic_system_factor(const struct harmonic *h, struct harmonic_sys
     struct place place = clique_place(h, state, c);
     bool element = c < h->mesh->element_count;
     if (!clique_form(h, state, c, n, form)) {
-      return error_set(error, STATUS_INVERTED, NULL,
-                       "the axisymmetric state is turned inside out near node %d", place.node[0]);
+      return inverted(&place, error);
     }
     pack(s, c, &place, form, element ? h->volume + (size_t)c * AXI_NODES : NULL, shift);
   }
   *negative = s->dof_count == 0 ? 0 : ldlt_factor(s->ldlt, (const double *const *)s->values);
+  return STATUS_OK;
+}
+
+enum status harmonic_system_product(const struct harmonic *h, const struct harmonic_state *state,
+                                    int n, const double *v, double *value, struct error *error) {
+  double form[HARMONIC_ELEMENT * HARMONIC_ELEMENT], local[HARMONIC_ELEMENT];
+  *value = 0;
+  for (int c = 0; c < clique_count(h, state); c++) {
+    struct place place = clique_place(h, state, c);
+    int width = HARMONIC_PARTS * place.count;
+    if (!clique_form(h, state, c, n, form)) {
+      return inverted(&place, error);
+    }
+    for (int i = 0; i < width; i++) {
+      local[i] = v[HARMONIC_PARTS * place.node[i / HARMONIC_PARTS] + i % HARMONIC_PARTS];
+    }
+    for (int i = 0; i < width; i++) {
+      for (int j = 0; j < width; j++) {
+        *value += local[i] * form[width * i + j] * local[j];
+      }
+    }
+  }
   return STATUS_OK;
 }
 
