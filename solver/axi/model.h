@@ -95,8 +95,10 @@ void axi_state_copy(const struct axi_model *model, const struct axi_state *from,
 struct continuation_options axi_defaults(const struct axi_model *model);
 
 /* Equilibrium at a fixed load (h prescribed if `held`) by Newton's method with line search, from
- * state->x, which may be any guess (an inverted shape, say). Fills the state. Returns as
- * continuation_correct; STATUS_INVALID when an elongation is held that the mesh does not have. */
+ * state->x, which may be any guess (an inverted shape, say); where h is held, it is brought from
+ * the guess's own to the load's, in several steps when one fails. Fills the state but for lambda.
+ * Returns as continuation_correct; STATUS_INVALID when an elongation is held that the mesh does not
+ * have. */
 enum status axi_equilibrium(struct axi_model *model, const struct axi_load *load, bool held,
                             const struct continuation_options *options, struct axi_state *state,
                             int *iterations, struct error *error);

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "solver/axi/continuation_internal.h"
 #include "solver/axi/model_internal.h"
 
 /* One solve. With h held the unknowns of the continuation are all but the last one. */
@@ -169,19 +170,83 @@ static struct continuation_system system_of(struct problem *p) {
                                       .solve = solve};
 }
 
+/* Moves x by `change` of lambda along the tangent at lambda. A guess may have none: it then stays.
+ */
+static enum status predict(struct problem *p, const struct continuation_system *system,
+                           double lambda, double change, double *x, struct error *error) {
+  double *room = malloc(sizeof *room * 2 * (size_t)system->size);
+  if (!room) {
+    return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for %d unknowns", system->size);
+  }
+  double *load = room + system->size;
+  int negative = 0;
+  enum status status = evaluate(p, x, lambda, true, room, load, error);
+  if (status == STATUS_OK) {
+    status = factor(p, &negative, error);
+  }
+  if (status == STATUS_OK) {
+    solve(p, load, load);
+    for (int i = 0; i < system->size; i++) {
+      x[i] -= change * load[i];
+    }
+  }
+  free(room);
+  return continuation_retry(status) ? STATUS_OK : status;
+}
+
+/* Brings h from where the guess has it to where it is held, at once or in shorter and shorter
+ * steps. */
+static enum status move(struct problem *p, const struct continuation_options *options,
+                        int *negative, int *iterations, struct error *error) {
+  const struct continuation_system system = system_of(p);
+  size_t bytes = sizeof(double) * (size_t)p->model->size;
+  double *start = malloc(bytes), *x = p->state->x;
+  enum status status =
+      start ? STATUS_OK : error_set(error, STATUS_NO_MEMORY, NULL, "no memory for a state");
+  double done = 0, step = 1;
+  while (status == STATUS_OK && done < 1) {
+    int count = 0;
+    memcpy(start, x, bytes);
+    status = predict(p, &system, done, step, x, error);
+    if (status == STATUS_OK) {
+      status = continuation_correct(&system, options, done + step, x, negative, &count, error);
+      *iterations += count + 1;
+    }
+    if (status == STATUS_OK) {
+      done += step;
+    } else if (continuation_retry(status) && step > 1.0 / 128) {
+      memcpy(x, start, bytes);
+      step *= 0.5;
+      status = STATUS_OK;
+    }
+  }
+  free(start);
+  return status;
+}
+
 enum status axi_equilibrium(struct axi_model *model, const struct axi_load *load, bool held,
                             const struct continuation_options *options, struct axi_state *state,
                             int *iterations, struct error *error) {
   struct problem p;
   struct axi_ramp ramp = {.from = *load, .to = *load, .held = held};
+  int negative = 0, count = 0;
+  if (held && model->elongation) {
+    ramp.from.elongation = state->x[model->size - 1];
+  }
   enum status status = problem_open(&p, model, &ramp, state, error);
-  if (status == STATUS_OK) {
+  if (status == STATUS_OK && ramp.from.elongation != ramp.to.elongation) {
+    status = move(&p, options, &negative, &count, error);
+  } else if (status == STATUS_OK) {
     struct continuation_system system = system_of(&p);
-    int negative = 0;
-    status = continuation_correct(&system, options, 0, state->x, &negative, iterations, error);
-    if (status == STATUS_OK) {
-      status = fill(&p, state->x, state->lambda, negative, error);
-    }
+    status = continuation_correct(&system, options, 1, state->x, &negative, &count, error);
+  }
+  if (status == STATUS_OK) {
+    double lambda = state->lambda;
+    status = fill(&p, state->x, 1, negative, error);
+    state->lambda = lambda;
+  }
+  if (iterations) {
+    *iterations = count;
   }
   free(p.x);
   return status;

@@ -103,7 +103,7 @@ enum status case_sphere_of_revolution(struct verify_run *run, struct error *erro
   enum status status = STATUS_OK;
   for (int level = 0; status == STATUS_OK && level < run->refinement; level++) {
     struct revolution body = {
-        .cells = {2 << level, 2 << level},
+        .cells = {2 << level, 4 << level},
         .map = sphere_map,
         .material = {.model = MATERIAL_NEO_HOOKE, .terms = 1, .c = {1}, .bulk_ratio = 1e6}};
     struct marked m = {.body = &body, .count = 4};

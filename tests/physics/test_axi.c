@@ -1,4 +1,4 @@
-/* Bodies of revolution: derivatives, closed solutions, energy balance, limit points. */
+/* Bodies of revolution: derivatives, closed solutions, a spring washer. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -99,12 +99,209 @@ START_TEST(residual_is_the_gradient_and_tangent_its_derivative) {
 }
 END_TEST
 
+/* ---- closed solutions -------------------------------------------------------------------- */
+
+static const double poisson = 0.3;
+
+static struct material_spec elastic(double young, double nu) {
+  return (struct material_spec){.model = MATERIAL_NEO_HOOKE,
+                                .terms = 1,
+                                .c = {young / 2 / (1 + nu)},
+                                .bulk_ratio = 2 * (1 + nu) / 3 / (1 - 2 * nu)};
+}
+
+/* Between r = 1 and 2; the lines of the mesh are not parallel. */
+static void tube_map(const void *context, double s, double t, double x[2]) {
+  const double *skew = context;
+  x[0] = 1 + s + *skew * 0.1 * sin(M_PI * s) * cos(M_PI * t);
+  x[1] = t;
+}
+
+/* A solid bar: the side s = 0 is the axis. */
+static void bar_map(const void *context, double s, double t, double x[2]) {
+  tube_map(context, s, t, x);
+  x[0] -= 1;
+}
+
+/* Lame (1852): plane strain, inner radius a, outer b, pressure p inside. */
+static double lame_displacement(double young, double a, double b, double p) {
+  return (1 + poisson) * a * p / (young * (b * b - a * a)) * ((1 - 2 * poisson) * a * a + b * b);
+}
+
+static double tube_error(int cells) {
+  struct error error = {.status = STATUS_OK};
+  const double skew = 1, pressure = 1e-7;
+  struct revolution body = {
+      .cells = {cells, cells}, .map = tube_map, .context = &skew, .material = elastic(1, poisson)};
+  struct axi_mesh mesh;
+  struct axi_model *model = NULL;
+  struct axi_state state;
+  ok(revolution_mesh(&body, &mesh, &error), &error);
+  revolution_hold(&body, &mesh, 1, 0, 1, AXI_FIXED);
+  revolution_hold(&body, &mesh, 1, 1, 1, AXI_FIXED);
+  ok(axi_model_create(&mesh, NULL, &model, &error), &error);
+  ok(axi_state_create(model, &state, &error), &error);
+  struct continuation_options options = axi_defaults(model);
+  options.tolerance = 1e-13;
+  ok(axi_equilibrium(model, &(struct axi_load){.pressure = pressure}, false, &options, &state, NULL,
+                     &error),
+     &error);
+  double wanted = lame_displacement(1, 1, 2, pressure), found = 0;
+  for (int j = 0; j <= 2 * cells; j++) {
+    found = fmax(found, fabs(state.u[2 * revolution_node(&body, 0, j)] / wanted - 1));
+  }
+  ck_assert(fabs(state.volume - M_PI * pow(1 + wanted, 2)) < 0.02 * M_PI * 2 * wanted);
+  axi_state_destroy(&state);
+  axi_model_destroy(model);
+  axi_mesh_release(&mesh);
+  return found;
+}
+
+START_TEST(tube_under_pressure_as_lame_says) {
+  double coarse = tube_error(2), fine = tube_error(4), finest = tube_error(8);
+  ck_assert_msg(finest < 1e-4, "error %g", finest);
+  double order = log(coarse / finest) / log(4);
+  ck_assert_msg(order > 2.7 && fine < coarse, "errors %g, %g, %g: order %g", coarse, fine, finest,
+                order);
+}
+END_TEST
+
+/* Lateral stretch of a neo-Hookean body whose axial stretch is l: the lateral stress is 0. */
+static double lateral(const struct material_spec *m, double l) {
+  double mu = m->c[0], kappa = axi_bulk_modulus(m), low = 0.1, high = 3;
+  for (int k = 0; k < 100; k++) {
+    double q = 0.5 * (low + high), j = l * q * q, i1 = l * l + 2 * q * q;
+    double stress = mu * pow(j, -2.0 / 3) * (q - i1 / (3 * q)) + kappa * (j - 1) * j / q;
+    *(stress > 0 ? &high : &low) = q;
+  }
+  return low;
+}
+
+static const double stretches[] = {0.6, 1.5, 2.5};
+
+/* Homogeneous deformation of a tube and of a solid bar, exact on any mesh. */
+START_TEST(stretched_bars_stay_homogeneous) {
+  struct error error = {.status = STATUS_OK};
+  const double skew = 1;
+  bool solid = _i % 2;
+  double l = stretches[_i / 2];
+  struct revolution body = {
+      .cells = {3, 4},
+      .map = solid ? bar_map : tube_map,
+      .context = &skew,
+      .material = {.model = MATERIAL_NEO_HOOKE, .terms = 1, .c = {0.7}, .bulk_ratio = 50}};
+  struct axi_mesh mesh;
+  struct axi_model *model = NULL;
+  struct axi_state state;
+  ok(revolution_mesh(&body, &mesh, &error), &error);
+  revolution_hold(&body, &mesh, 1, 0, 1, AXI_FIXED);
+  revolution_hold(&body, &mesh, 1, 1, 1, AXI_PLATE);
+  for (int j = 0; solid && j <= 8; j++) {
+    int node = revolution_node(&body, 0, j);
+    mesh.position[2 * node] = 0;
+    mesh.hold[2 * node] = AXI_FIXED;
+  }
+  ok(axi_model_create(&mesh, NULL, &model, &error), &error);
+  ok(axi_state_create(model, &state, &error), &error);
+  struct continuation_options options = axi_defaults(model);
+  options.iterations_max = 60;
+  ok(axi_equilibrium(model, &(struct axi_load){.elongation = l - 1}, true, &options, &state, NULL,
+                     &error),
+     &error);
+  const struct material_spec *m = &mesh.region[0];
+  double q = lateral(m, l), j = l * q * q, mu = m->c[0], i1 = l * l + 2 * q * q;
+  double stress =
+      mu * pow(j, -2.0 / 3) * (l - i1 / (3 * l)) + axi_bulk_modulus(m) * (j - 1) * q * q;
+  double area = M_PI * (solid ? 1 : 3);
+  ck_assert_msg(fabs(state.force / (area * stress) - 1) < 1e-6, "force %g of %g", state.force,
+                area * stress);
+  for (int i = 0; i < mesh.node_count; i++) {
+    const double *x = mesh.position + 2 * i, *u = state.u + 2 * i;
+    ck_assert_double_lt(fabs(u[0] - (q - 1) * x[0]), 1e-6);
+    ck_assert_double_lt(fabs(u[1] - (l - 1) * x[1]), 1e-6);
+  }
+  ck_assert_int_eq(state.negative_held, 0);
+  axi_state_destroy(&state);
+  axi_model_destroy(model);
+  axi_mesh_release(&mesh);
+}
+END_TEST
+
+/* ---- a spring washer --------------------------------------------------------------------- */
+
+/* De 40, Di 20, t 0.5, h0 0.7 mm. */
+static void washer_map(const void *context, double s, double t, double x[2]) {
+  (void)context;
+  const double thickness = 0.5e-3, height = 0.7e-3, width = 10e-3;
+  double angle = atan2(height, width), across = (t - 0.5) * thickness;
+  x[0] = 10e-3 + s * width + across * sin(angle);
+  x[1] = (1 - s) * height + across * cos(angle);
+}
+
+struct forces {
+  int count;
+  double force[4];
+};
+
+static bool keep_targets(void *context, const struct axi_state *state,
+                         const struct continuation_point *point) {
+  struct forces *f = context;
+  if (point->events & CONTINUATION_TARGET) {
+    f->force[f->count++] = -state->force;
+  }
+  return f->count < 4;
+}
+
+/* Forces at s/h0 = 1/4 to 1 of another program. The rigid section of Almen and Laszlo (1936) gives
+ * an upper bound; for this wide ring it is up to 11 % higher. */
+START_TEST(wide_washer) {
+  static const double other[4] = {36.6, 56.1, 64.2, 66.7}, targets[4] = {0.25, 0.5, 0.75, 1};
+  struct error error = {.status = STATUS_OK};
+  struct revolution body = {
+      .cells = {20, 2}, .map = washer_map, .material = elastic(206e9, poisson)};
+  struct axi_mesh mesh;
+  struct axi_model *model = NULL;
+  struct axi_state state;
+  struct forces found = {.count = 0};
+  ok(revolution_mesh(&body, &mesh, &error), &error);
+  mesh.hold[2 * revolution_node(&body, 40, 0) + 1] = AXI_FIXED;
+  mesh.hold[2 * revolution_node(&body, 0, 4) + 1] = AXI_PLATE;
+  ok(axi_model_create(&mesh, NULL, &model, &error), &error);
+  ok(axi_state_create(model, &state, &error), &error);
+  struct continuation_options options = axi_defaults(model);
+  options.target = targets;
+  options.target_count = 4;
+  struct axi_ramp ramp = {.to = {.elongation = -0.7e-3}, .held = true};
+  ok(axi_follow(model, &ramp, &options, 1, NULL, keep_targets, &found, &state, &error), &error);
+  double delta = 2, h = 0.7 / 0.5;
+  double k = pow((delta - 1) / delta, 2) / ((delta + 1) / (delta - 1) - 2 / log(delta)) / M_PI;
+  for (int i = 0; i < 4; i++) {
+    double x = targets[i] * h;
+    double rigid = 4 * 206e9 / (1 - poisson * poisson) * pow(0.5e-3, 4) / (k * 1.6e-3) * x *
+                   ((h - x) * (h - 0.5 * x) + 1);
+    ck_assert_msg(fabs(found.force[i] / other[i] - 1) < 0.01, "%g N, not %g", found.force[i],
+                  other[i]);
+    ck_assert_msg(found.force[i] < rigid && found.force[i] > 0.87 * rigid, "%g N, rigid %g",
+                  found.force[i], rigid);
+  }
+  axi_state_destroy(&state);
+  axi_model_destroy(model);
+  axi_mesh_release(&mesh);
+}
+END_TEST
+
 static Suite *axi_suite(void) {
   Suite *suite = suite_create("axi");
   TCase *derivatives = tcase_create("derivatives");
   tcase_add_loop_test(derivatives, residual_is_the_gradient_and_tangent_its_derivative, 0,
                       2 * LAWS);
   suite_add_tcase(suite, derivatives);
+  TCase *solutions = tcase_create("solutions");
+  tcase_add_test(solutions, tube_under_pressure_as_lame_says);
+  tcase_add_loop_test(solutions, stretched_bars_stay_homogeneous, 0,
+                      2 * sizeof stretches / sizeof *stretches);
+  tcase_add_test(solutions, wide_washer);
+  suite_add_tcase(suite, solutions);
   return suite;
 }
 
