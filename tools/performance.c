@@ -21,7 +21,9 @@ static const char *const files[FIGURES_COUNT] = {[FIGURES_SOLVE] = "solve",
                                                  [FIGURES_ROBUSTNESS] = "robustness",
                                                  [FIGURES_BATCH] = "batch",
                                                  [FIGURES_ERROR] = "error",
-                                                 [FIGURES_REPEAT] = "repeat"};
+                                                 [FIGURES_REPEAT] = "repeat",
+                                                 [FIGURES_HYBRID] = "hybrid",
+                                                 [FIGURES_QUEUE] = "queue"};
 
 static const struct section {
   const char *line;
@@ -38,7 +40,9 @@ static const struct section {
                 {"@ROBUSTNESS@\n", FIGURES_ROBUSTNESS, print_robustness},
                 {"@BATCH@\n", FIGURES_BATCH, print_batch},
                 {"@ERROR@\n", FIGURES_ERROR, print_error},
-                {"@REPEAT@\n", FIGURES_REPEAT, print_repeat}};
+                {"@REPEAT@\n", FIGURES_REPEAT, print_repeat},
+                {"@HYBRID@\n", FIGURES_HYBRID, print_hybrid},
+                {"@QUEUE@\n", FIGURES_QUEUE, print_queue}};
 
 double figure_number(const json_t *object, const char *key) {
   const json_t *value = json_object_get(object, key);

@@ -17,6 +17,8 @@ enum figures_part {
   FIGURES_BATCH,
   FIGURES_ERROR,
   FIGURES_REPEAT,
+  FIGURES_HYBRID,
+  FIGURES_QUEUE,
   FIGURES_COUNT
 };
 
@@ -64,6 +66,8 @@ void print_robustness(FILE *out, const struct figures *figures);
 void print_batch(FILE *out, const struct figures *figures);
 void print_error(FILE *out, const struct figures *figures);
 void print_repeat(FILE *out, const struct figures *figures);
+void print_hybrid(FILE *out, const struct figures *figures);
+void print_queue(FILE *out, const struct figures *figures);
 
 /* One value of the points of bench_scaling. */
 struct growth {

@@ -140,6 +140,16 @@ static void repeat_rows(FILE *out, const json_t *document) {
              figure_number(threads, "largest_difference"), false);
 }
 
+static void hybrid_rows(FILE *out, const json_t *hybrid, const json_t *queue) {
+  const json_t *own = json_object_get(hybrid, "simulation");
+  number_row(out, "40 s of a hybrid model in eight steps at 1e-9, with samples", "%.2f ms", 5,
+             1e3 * figure_number(own, "with_samples_s"), false);
+  number_row(out, "faster than Octave's `ode45` with events at 1e-8, same run", "%.0f times", 300,
+             figure_number(json_object_get(hybrid, "octave"), "ratio"), true);
+  number_row(out, "such simulations a minute of a core, through the queue as one study", "%.0f",
+             10000, figure_number(queue, "simulations_per_minute_core"), true);
+}
+
 /* The largest peak memory of designs at `standard`, MB; NAN for other designs. */
 static double standard_memory(const json_t *document) {
   const char *accuracy = figure_text(json_object_get(document, "options"), "accuracy");
@@ -170,4 +180,5 @@ void print_summary(FILE *out, const struct figures *figures) {
   calculix_rows(out, part[FIGURES_CALCULIX]);
   number_row(out, "memory of a design at `standard`, the largest", "%.0f MB", 500, memory, false);
   repeat_rows(out, part[FIGURES_REPEAT]);
+  hybrid_rows(out, part[FIGURES_HYBRID], part[FIGURES_QUEUE]);
 }

@@ -1,6 +1,6 @@
 % A hybrid model by ode45 with events, for comparison.
 %   octave --no-gui --norc --quiet ode45_hybrid.m PROBLEM.json ANSWER.json REPETITIONS
-% The problem is that of bench_hybrid, in SI units; the answer has the shortest time in s, the final
+% The problem is that of bench_hybrid, in SI units; the answer has the shortest CPU time in s, the final
 % state and the times of the switches.
 1;
 
@@ -32,7 +32,7 @@ function [x, switches, steps] = simulate(problem)
   mode = problem.initial_mode + 1;
   switches = [];
   steps = 0;
-  corners = [problem.time(:); problem.end];
+  corners = [problem.time(:); problem.stop];
   for i = 1:numel(problem.value)
     u = problem.value(i);
     t = corners(i);
@@ -57,15 +57,15 @@ function [x, switches, steps] = simulate(problem)
   end
 end
 
-arguments = argv();
-problem = jsondecode(fileread(arguments{1}));
+files = argv();
+problem = jsondecode(fileread(files{1}));
 best = Inf;
-for repetition = 1:str2double(arguments{3})
-  start = tic;
+for repetition = 1:str2double(files{3})
+  start = cputime();
   [x, switches, steps] = simulate(problem);
-  best = min(best, toc(start));
+  best = min(best, cputime() - start);
 end
-file = fopen(arguments{2}, 'w');
+file = fopen(files{2}, 'w');
 fprintf(file, '{"version": "%s", "time_s": %.6g, "points": %d, "final": [%.17g, %.17g, %.17g], "switches": [%s]}\n', ...
         version(), best, steps, x, strjoin(arrayfun(@(t) sprintf('%.17g', t), switches, 'UniformOutput', false), ', '));
 fclose(file);

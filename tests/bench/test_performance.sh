@@ -23,7 +23,7 @@ write
 contains '(nothing measured yet)'
 contains 'Not measured: run `make bench`.'
 contains 'Not measured: run `make bench-robustness`.'
-[ "$(grep -c '| not measured |' "$dir/out.md")" = 11 ] || fail "targets without figures"
+[ "$(grep -c '| not measured |' "$dir/out.md")" = 14 ] || fail "targets without figures"
 ! grep -q '@[A-Z]*@' "$dir/out.md" || fail "a marker is left"
 
 # A processor, a fast cold solve, and neighbours of which one is slow.
@@ -61,6 +61,16 @@ cat >"$dir/in/scaling.json" <<'JSON'
   { "unknowns": 1000, "chambers": 1, "step_s": 0.01 }, { "unknowns": 10000, "chambers": 1, "step_s": 0.1 },
   { "unknowns": 100000, "chambers": 1, "step_s": 1.0 } ] } ] }
 JSON
+cat >"$dir/in/hybrid.json" <<'JSON'
+{ "simulation": { "with_samples_s": 0.004, "without_samples_s": 0.003, "samples": 4801, "steps": 2700, "evaluations": 3800,
+    "state_error": 1e-9, "event_error_s": 1e-11 },
+  "octave": { "version": "7.3.0", "time_s": 1, "ratio": 250, "state_error": 1e-8, "event_error_s": 1e-5 } }
+JSON
+cat >"$dir/in/queue.json" <<'JSON'
+{ "members": 10000, "solved": 10000, "post_s": 1, "wall_s": 50, "cpu_s": 40, "simulations_per_minute_wall": 11765,
+  "simulations_per_minute_core": 15000, "solver_peak_memory_MB": 70, "daemon_peak_memory_MB": 200, "result_bytes": 1e7,
+  "page_s": 0.3, "result_s": 0.1, "plot_s": 0.5 }
+JSON
 write
 contains '| processor | Test 9000 |'
 contains '| designs that reach the end or a named physical limit | all | 2 of 5 (40.0 %) | **short** |'
@@ -74,6 +84,11 @@ contains '| 20 | 100 (fine, 1.00 %) |'
 contains '| 33 | more than 33 (fine, 1.00 %) |'
 contains '| 2 | 2 B + 3 C | soft | diverged | `contact_cycling` |'
 ! grep -q '^| 1 | .*limit_point' "$dir/out.md" || fail "a limit of the body is among the rest"
+contains '| at most 5.00 ms | 4.00 ms | met |'
+contains '| at least 300 times | 250 times | **short** |'
+contains '| at least 10000 | 15000 | met |'
+contains '| its time over ours with samples | **250** |'
+contains '| 10000 of 10000 |'
 contains '| one step | 1.00 | 1000 to 100000 | 3 |'
 for figure in performance-unknowns performance-designs; do
   contains "(figures/$figure.png)"
