@@ -33,6 +33,7 @@ const CAPTIONS = {
   control: 'Elongation under position control',
   coefficients: 'Identified coefficients with their polynomials',
   fitted: 'Trials, measured and simulated',
+  snap: 'The fastest snap',
   'snap-path': 'Equilibrium under pressure and under axial force',
   shapes: 'Meridian in its states',
   held: 'Force at the natural length against pressure',

@@ -124,6 +124,19 @@ static void widen(bool logarithmic, double *min, double *max, int target) {
   }
 }
 
+/* Widens the y range. A low chart has few ticks, to whose multiples a range may have to grow much:
+ * then it ends between them. */
+static void widen_upwards(const struct axes *axes, struct frame *frame, int target) {
+  static const double least_fill = 0.55;
+  double low = frame->y_min, high = frame->y_max;
+  widen(axes->log_y, &frame->y_min, &frame->y_max, target);
+  if (!axes->log_y && high > low && high - low < least_fill * (frame->y_max - frame->y_min)) {
+    frame->y_min = low;
+    frame->y_max = high;
+    widen(false, &frame->y_min, &frame->y_max, 3 * target);
+  }
+}
+
 void axes_widen(const struct canvas *canvas, const struct axes *axes, struct frame *frame) {
   int across = x_target(canvas, frame->area.width);
   int upwards = axes_tick_target(canvas, frame->area.height, Y_SPACING);
@@ -138,7 +151,7 @@ void axes_widen(const struct canvas *canvas, const struct axes *axes, struct fra
   } else {
     widen(axes->log_x, &frame->x_min, &frame->x_max, across);
   }
-  widen(axes->log_y, &frame->y_min, &frame->y_max, upwards);
+  widen_upwards(axes, frame, upwards);
 }
 
 static void draw_x_numbers(struct canvas *canvas, const struct axes *axes,

@@ -312,7 +312,8 @@ static struct legend measure_band(const struct panel *panel, struct canvas *canv
   double width = area->width + panel->beside, height = 0.45 * area->height;
   size_t usual = chart->series_count > 4 ? 2 : 1;
   struct legend best = legend_measure(canvas, chart, usual, width, height);
-  for (size_t columns = usual + 1; columns <= COLUMNS_MOST && best.rows > ROWS_GOOD; columns++) {
+  for (size_t columns = usual + 1;
+       columns <= COLUMNS_MOST && (best.rows > ROWS_GOOD || !best.complete); columns++) {
     struct legend legend = legend_measure(canvas, chart, columns, width, height);
     best = legend.complete ? legend : best;
   }
@@ -427,17 +428,20 @@ void chart_draw_grid(const struct chart *charts, const double *shares, size_t ro
     to = panels[i].points > 0 ? fmax(to, panels[i].data.x_max) : to;
   }
   for (size_t i = 0; i < rows * columns; i++) {
-    struct panel *panel = &panels[i];
-    panel->data.x_min = from <= to ? from : 0;
-    panel->data.x_max = from <= to ? to : 1;
-    lay_out(panel, canvas, panel->sheet.y);
-    left[i % columns] = fmax(left[i % columns], panel->frame.area.x - panel->sheet.x);
+    panels[i].data.x_min = from <= to ? from : 0;
+    panels[i].data.x_max = from <= to ? to : 1;
   }
-  for (size_t i = 0; i < rows * columns; i++) {
-    panels[i].left = left[i % columns];
-  }
-  for (size_t row = 0; row < rows; row++) {
-    align_row(panels + row * columns, columns, canvas);
+  /* twice: legends and numbers need room, which changes the numbers */
+  for (size_t pass = 0; pass < 2; pass++) {
+    for (size_t row = 0; row < rows; row++) {
+      align_row(panels + row * columns, columns, canvas);
+    }
+    for (size_t i = 0; i < rows * columns; i++) {
+      left[i % columns] = fmax(left[i % columns], panels[i].frame.area.x - panels[i].sheet.x);
+    }
+    for (size_t i = 0; i < rows * columns; i++) {
+      panels[i].left = left[i % columns];
+    }
   }
   for (size_t i = 0; i < rows * columns; i++) {
     draw_panel(&panels[i], canvas);

@@ -42,6 +42,9 @@ enum status draw_time(struct canvas *canvas, const struct plot_input *inputs, si
 /* Elongation of plate, cells and load, speed, pressure and bending over time, with the snaps. */
 enum status draw_motion(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                         struct error *error);
+/* The same around the fastest snap. */
+enum status draw_snap(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                      struct error *error);
 /* Speed against elongation of a hybrid model, with its guards and resets; of cells in motion by how
  * many of them are stretched. */
 enum status draw_phase(struct canvas *canvas, const struct plot_input *inputs, size_t count,

@@ -1,10 +1,12 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "server/plot/data.h"
 #include "server/plot/draw.h"
 #include "server/plot/hybrid.h"
+#include "server/plot/motion.h"
 
 /* Cells and actuators that are drawn: more could not be told apart. */
 enum { CELLS_MOST = 7, ACTUATORS_MOST = 6, PANELS = 4, KEY = 40, NAME = 60 };
@@ -12,10 +14,16 @@ enum { CELLS_MOST = 7, ACTUATORS_MOST = 6, PANELS = 4, KEY = 40, NAME = 60 };
 /* Part of a range below which a move cannot be seen. */
 static const double visible = 1.0 / 1500.0;
 
+/* The time that is shown, and how: as it is, or in ms from an instant. */
+struct window {
+  double from, to, origin, unit;
+};
+
 /* A chart of the stack: curves of keys over time. */
 struct panel {
   const char *label;
   struct bundle bundle;
+  struct window window;
   size_t curves;
   double reach; /* of the background */
 };
@@ -28,6 +36,7 @@ struct words {
 /* Adds the curve of `key` over time, if the samples have it. */
 static enum status add_curve(const json_t *result, const char *key, struct chart_series like,
                              struct panel *panel, struct error *error) {
+  const struct window *window = &panel->window;
   struct point *points = NULL;
   size_t count = 0;
   double low = INFINITY, high = -INFINITY;
@@ -36,11 +45,17 @@ static enum status add_curve(const json_t *result, const char *key, struct chart
     free(points);
     return status;
   }
+  size_t inside = 0;
   for (size_t i = 0; i < count; i++) {
-    low = fmin(low, points[i].y);
-    high = fmax(high, points[i].y);
+    struct point p = {(points[i].x - window->origin) / window->unit, points[i].y};
+    if (points[i].x >= window->from && points[i].x <= window->to) {
+      low = fmin(low, p.y);
+      high = fmax(high, p.y);
+      points[inside++] = p;
+    }
   }
-  double dx = visible * fabs(points[count - 1].x - points[0].x);
+  count = inside;
+  double dx = count ? visible * fabs(points[count - 1].x - points[0].x) : 0;
   count = data_thin(points, count, dx, visible * (high - low));
   status = bundle_add(&panel->bundle, like, points, count, error);
   panel->curves++;
@@ -132,35 +147,41 @@ static enum status read_panels(const json_t *result, struct words *words,
   }
   for (size_t i = 0; i < PANELS && status == STATUS_OK; i++) {
     measure(&panels[i]);
-    status = hybrid_add_switches(result, panels[i].reach, i == 0 ? "snap" : NULL, &panels[i].bundle,
-                                 error);
+    if (panels[i].window.unit == 1) {
+      status = hybrid_add_switches(result, panels[i].reach, i == 0 ? "snap" : NULL,
+                                   &panels[i].bundle, error);
+    }
   }
   return status;
 }
 
-enum status draw_motion(struct canvas *canvas, const struct plot_input *inputs, size_t count,
-                        struct error *error) {
+/* Draws the part of the motion that the window shows. */
+static enum status draw_window(struct canvas *canvas, const struct plot_input *input,
+                               struct window window, const char *title, const char *subtitle,
+                               struct error *error) {
   static const double with_angle[PANELS] = {0.34, 0.2, 0.26, 0.2};
   static const double without[PANELS - 1] = {0.42, 0.26, 0.32};
   struct panel panels[PANELS] = {
       {.label = "h (mm)"}, {.label = "h' (m/s)"}, {.label = "p (kPa)"}, {.label = "Angle (°)"}};
   struct chart charts[PANELS];
   struct words words;
-  char subtitle[DATA_HEADING], notice[DATA_HEADING];
-  (void)count;
-  data_subtitle(&inputs[0], subtitle);
-  data_notice(inputs[0].result, notice);
-  enum status status = read_panels(inputs[0].result, &words, panels, error);
+  char notice[DATA_HEADING];
+  data_notice(input->result, notice);
+  for (size_t i = 0; i < PANELS; i++) {
+    panels[i].window = window;
+  }
+  enum status status = read_panels(input->result, &words, panels, error);
   size_t shown = panels[3].curves > 0 ? PANELS : PANELS - 1;
   for (size_t i = 0; i < shown; i++) {
-    charts[i] = (struct chart){.title = "Elongation of plate and cells, speed and pressure",
-                               .subtitle = subtitle,
-                               .notice = notice,
-                               .x_label = "Time (s)",
-                               .y_label = panels[i].label,
-                               .series = panels[i].bundle.series,
-                               .series_count = panels[i].bundle.count,
-                               .empty = "No samples were recorded"};
+    charts[i] =
+        (struct chart){.title = title,
+                       .subtitle = subtitle,
+                       .notice = notice,
+                       .x_label = window.unit == 1 ? "Time (s)" : "Time from the trigger (ms)",
+                       .y_label = panels[i].label,
+                       .series = panels[i].bundle.series,
+                       .series_count = panels[i].bundle.count,
+                       .empty = "No samples were recorded"};
   }
   if (status == STATUS_OK) {
     chart_draw_stack(charts, shown == PANELS ? with_angle : without, shown, canvas);
@@ -169,4 +190,50 @@ enum status draw_motion(struct canvas *canvas, const struct plot_input *inputs, 
     bundle_release(&panels[i].bundle);
   }
   return status;
+}
+
+enum status draw_motion(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                        struct error *error) {
+  char subtitle[DATA_HEADING];
+  (void)count;
+  data_subtitle(&inputs[0], subtitle);
+  return draw_window(canvas, inputs, (struct window){-INFINITY, INFINITY, 0, 1},
+                     "Elongation of plate and cells, speed and pressure", subtitle, error);
+}
+
+const json_t *motion_fastest_snap(const json_t *result) {
+  const json_t *fastest = NULL, *event;
+  double speed = 0;
+  size_t index;
+  json_array_foreach(json_object_get(result, "events"), index, event) {
+    const char *type = json_string_value(json_object_get(event, "type"));
+    double peak = data_number(event, "peak_speed_m_s");
+    if (type && strcmp(type, "snap") == 0 && peak > speed &&
+        data_number(event, "snap_time_s") > 0 &&
+        isfinite(data_number(event, "trigger_time_s") + data_number(event, "peak_time_s"))) {
+      speed = peak;
+      fastest = event;
+    }
+  }
+  return fastest;
+}
+
+enum status draw_snap(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                      struct error *error) {
+  const json_t *event = motion_fastest_snap(inputs[0].result);
+  char subtitle[DATA_HEADING], speed[TICKS_TEXT], time[TICKS_TEXT];
+  double trigger = data_number(event, "trigger_time_s"), peak = data_number(event, "peak_time_s");
+  double duration = data_number(event, "snap_time_s");
+  /* The slow beginning would take up all of it: the time is that of the peak less some durations.
+   */
+  double origin = fmax(trigger, peak - 2.5 * duration);
+  struct window window = {origin - 0.5 * duration, peak + 5 * duration, trigger, 1e-3};
+  (void)count;
+  data_subtitle(&inputs[0], subtitle);
+  size_t used = strlen(subtitle);
+  ticks_number(data_number(event, "peak_speed_m_s"), 3, speed);
+  ticks_number(1e3 * duration, 3, time);
+  snprintf(subtitle + used, DATA_HEADING - used, "%speak %s m/s, 10 to 90 %% of the way in %s ms",
+           used ? " · " : "", speed, time);
+  return draw_window(canvas, inputs, window, "The fastest snap", subtitle, error);
 }

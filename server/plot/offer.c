@@ -6,6 +6,7 @@
 #include "server/plot/data.h"
 #include "server/plot/extension.h"
 #include "server/plot/metric.h"
+#include "server/plot/motion.h"
 #include "server/plot/ranking.h"
 
 /* What is less is round-off or the tolerance of the equilibrium. */
@@ -113,6 +114,10 @@ const char *offer_steady(const struct plot_input *input) {
   return json_array_size(json_object_get(input->result, "holds")) >= 2
              ? NULL
              : "fewer than two set-points were held";
+}
+
+const char *offer_snap(const struct plot_input *input) {
+  return motion_fastest_snap(input->result) ? NULL : "nothing snapped";
 }
 
 const char *offer_control(const struct plot_input *input) {

@@ -50,6 +50,7 @@ static const struct entry entries[] = {
     {"stability", "snap", draw_stability, offer_stability},
     {"time", "bistable", draw_motion, NULL},
     {"phase", "bistable", draw_phase, NULL},
+    {"snap", "bistable", draw_snap, offer_snap},
     {"overlay", NULL, draw_overlay, NULL},
 };
 

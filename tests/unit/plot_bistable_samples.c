@@ -182,7 +182,10 @@ json_t *plot_sample_motion(bool load) {
     json_array_append_new(samples, sample);
   }
   for (int cell = 0; cell < 3; cell++) {
-    json_array_append_new(events, json_pack("{s:s, s:f}", "type", "snap", "time_s", 1.0 + cell));
+    json_array_append_new(events, json_pack("{s:s, s:f, s:f, s:f, s:f, s:f}", "type", "snap",
+                                            "time_s", 1.0 + cell, "trigger_time_s", 0.99 + cell,
+                                            "peak_time_s", 1.02 + cell, "peak_speed_m_s",
+                                            1.0 + cell, "snap_time_s", 0.05));
     json_array_append_new(events, json_pack("{s:s, s:f}", "type", "stop", "time_s", 1.5 + cell));
   }
   return json_pack("{s:s, s:s, s:o, s:o}", "status", "succeeded", "kind", "bistable", "samples",

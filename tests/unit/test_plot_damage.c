@@ -15,7 +15,7 @@ static const char *const all_plots[] = {
     "curves",   "metric",    "ranking",      "workspace", "twist",   "mesh",      "suction",
     "measured", "midline3d", "tip3d",        "angle",     "tip",     "midline",   "contraction",
     "fit",      "stress",    "time",         "phase",     "steady",  "snap-path", "shapes",
-    "held",     "stability", "coefficients", "fitted",    "control", "overlay"};
+    "held",     "stability", "coefficients", "fitted",    "control", "snap",      "overlay"};
 enum { ALL = sizeof all_plots / sizeof *all_plots };
 
 /* Draws everything that a document may be drawn as: a picture or a refusal, nothing else. */

@@ -34,6 +34,8 @@ START_TEST(both_kinds_offer_theirs) {
   char text[300];
   json_t *identified = plot_sample_identify(), *motion = plot_sample_motion(false);
   ck_assert_str_eq(picture_offered("identify", identified, text), "coefficients fitted");
+  ck_assert_str_eq(picture_offered("bistable", motion, text), "time phase snap");
+  json_object_del(motion, "events");
   ck_assert_str_eq(picture_offered("bistable", motion, text), "time phase");
   ck_assert_str_eq(plot_names("identify")[1], "fitted");
   ck_assert_str_eq(plot_names("bistable")[0], "time");
@@ -50,6 +52,8 @@ START_TEST(every_plot_at_every_size) {
   picture_at_all_sizes("time", one, "cells");
   picture_at_all_sizes("time", two, "load");
   picture_at_all_sizes("phase", one, "cells");
+  picture_at_all_sizes("snap", one, "cells");
+  picture_at_all_sizes("snap", two, "load");
   json_decref(identified);
   json_decref(one);
   json_decref(two);
@@ -137,6 +141,18 @@ START_TEST(the_plate_climbs_by_steps) {
 }
 END_TEST
 
+/* The last of the three is the fastest: the first cell is stretched, and only the third moves. */
+START_TEST(the_fastest_snap_is_enlarged) {
+  json_t *motion = plot_sample_motion(false);
+  struct picture picture = picture_of("snap", motion, NULL);
+  double before = mean_in(&picture, 90, 160, 56, 268, LINE, GREEN);
+  double after = mean_in(&picture, 600, 740, 56, 268, LINE, GREEN);
+  ck_assert_msg(after < before - 20, "%g is not above %g", after, before);
+  free(picture.rgb);
+  json_decref(motion);
+}
+END_TEST
+
 START_TEST(motion_without_samples) {
   json_t *empty = json_pack("{s:s}", "kind", "bistable");
   json_t *bare = json_pack("{s:s, s:[{}], s:[{}, n]}", "kind", "identify", "modes", "trials");
@@ -159,6 +175,7 @@ int main(void) {
   tcase_add_test(tcase, coefficients_over_the_mass);
   tcase_add_test(tcase, residuals_of_trials_held_out);
   tcase_add_test(tcase, the_plate_climbs_by_steps);
+  tcase_add_test(tcase, the_fastest_snap_is_enlarged);
   tcase_add_test(tcase, motion_without_samples);
   suite_add_tcase(suite, tcase);
   SRunner *runner = srunner_create(suite);
