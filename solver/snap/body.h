@@ -8,6 +8,7 @@
 #include <jansson.h>
 #include "solver/axi/model.h"
 #include "solver/job/snap.h"
+#include "solver/snap/folded.h"
 
 struct snap_body {
   void *self;
@@ -21,8 +22,9 @@ struct snap_body {
   enum status (*equilibrium)(void *self, const struct axi_load *load, bool held,
                              const struct continuation_options *options, struct axi_state *state,
                              struct error *error);
-  /* Puts a guess of the compressed state into state->x. */
-  void (*fold)(void *self, struct axi_state *state);
+  /* The state without load with all snapping shells inside out: see solver/snap/folded.h. */
+  enum status (*fold)(void *self, const struct folded_limits *limits, struct axi_state *state,
+                      struct error *error);
   /* Number of snapping shells that are inside out. */
   int (*inverted)(const void *self, const double *u);
   /* Largest principal logarithmic strain of the PET, by its size. */

@@ -2,113 +2,199 @@
 
 #include <math.h>
 
-/* What is left of the distance to the centre of curvature inside a bend. */
-static const double core = 0.3;
-/* Distance of folded shells from each other relative to their thickness. */
-static const double clearance = 1.05;
+/* Ratios of bulk to shear modulus of the foam: as it is pushed, and as it is carried over. */
+static const double foam = 0.3;
+/* Part of the PET's modulus that is left as the body is pushed. */
+static const double soft = 0.02;
+/* Angle of a shell that counts as turned, relative to the one as moulded. */
+static const double turned = 0.8;
 
-/* A part in the guess. */
-struct placed {
-  double direction[2]; /* of its start and its end */
-  double start[2], end[2];
-  double pull; /* length of the curve's derivative at both ends */
+/* Whether another way may lead further. */
+static bool may_try_again(enum status status) {
+  return status == STATUS_DIVERGED || status == STATUS_INVERTED || status == STATUS_STEP_MINIMUM ||
+         status == STATUS_UNSTABLE_PATH;
+}
+
+/* ---- changing the material ---------------------------------------------------------------- */
+
+/* Takes a positive coefficient of the material from its value to another one, in equilibrium with
+ * the load, in steps that get shorter where Newton's method fails. It has the last value that was
+ * reached. */
+static enum status change(double *value, double to, struct axi_model *model,
+                          const struct axi_load *load, bool held,
+                          const struct continuation_options *limits, struct axi_state *state,
+                          struct error *error) {
+  struct continuation_options options = *limits;
+  double factor = 2.0;
+  options.iterations_max = 40;
+  enum status status = STATUS_OK;
+  while (status == STATUS_OK && *value != to) {
+    double before = *value, ratio = to / before;
+    *value = fabs(log(ratio)) <= log(factor) ? to : ratio > 1.0 ? before * factor : before / factor;
+    enum status one = axi_equilibrium(model, load, held, &options, state, NULL, error);
+    if (one == STATUS_DIVERGED || one == STATUS_INVERTED) {
+      *value = before;
+      factor = sqrt(factor);
+      status = factor < 1.002 ? one : STATUS_OK;
+    } else {
+      status = one;
+      factor = fmin(pow(factor, 1.3), 4.0);
+    }
+  }
+  return status;
+}
+
+/* ---- pushing ------------------------------------------------------------------------------ */
+
+struct push {
+  const struct snap_spec *spec;
+  const struct bellows *bellows;
+  bool found;
 };
 
-/* Cubic curve with the chord and directions of the part; s from 0 to 1. *curvature is positive
- * where it turns anticlockwise. */
-static void hermite(const struct placed *p, double s, double x[2], double normal[2],
-                    double *curvature) {
-  double first[2], second[2];
-  double pull = p->pull;
-  for (int i = 0; i < 2; i++) {
-    double m0 = pull * (i == 0 ? cos(p->direction[0]) : sin(p->direction[0]));
-    double m1 = pull * (i == 0 ? cos(p->direction[1]) : sin(p->direction[1]));
-    double c = p->end[i] - p->start[i];
-    double a2 = 3.0 * c - 2.0 * m0 - m1, a3 = m0 + m1 - 2.0 * c;
-    x[i] = p->start[i] + s * (m0 + s * (a2 + s * a3));
-    first[i] = m0 + s * (2.0 * a2 + 3.0 * s * a3);
-    second[i] = 2.0 * a2 + 6.0 * s * a3;
+static bool is_folded(const struct push *push, const struct axi_state *state) {
+  int pairs = push->spec->pair_count;
+  return state->negative_free == 0 && bellows_inverted(push->bellows, pairs, state->u) == pairs;
+}
+
+static bool until_turned(void *context, const struct axi_state *state,
+                         const struct continuation_point *point) {
+  struct push *push = context;
+  (void)point;
+  push->found = true;
+  for (int k = 0; k < push->spec->pair_count; k++) {
+    double angle = bellows_shell_angle(push->bellows, k, state->u);
+    push->found = push->found && angle < -turned * push->spec->pair[k].snapping_angle;
   }
-  double speed = hypot(first[0], first[1]);
-  normal[0] = first[1] / speed;
-  normal[1] = -first[0] / speed;
-  *curvature = (first[0] * second[1] - first[1] * second[0]) / (speed * speed * speed);
+  return !push->found && fabs(state->elongation) < push->bellows->line.length;
 }
 
-/* Distance from the middle line that a point at the distance t keeps. */
-static double squeezed(double t, double curvature) {
-  double room = (1.0 - core) / fmax(fabs(curvature), 1e-9);
-  bool inside = t * curvature < 0.0;
-  return inside && fabs(t) > 0.0 ? t / hypot(1.0, t / room) : t;
+static bool until_reached(void *context, const struct axi_state *state,
+                          const struct continuation_point *point) {
+  (void)context;
+  (void)state;
+  return !(point->events & CONTINUATION_TARGET);
 }
 
-static void place_row(const struct bellows *b, const struct meridian_part *part,
-                      const struct placed *placed, int row, double s, double *u) {
-  double at[2], natural[2], x[2], normal[2], curvature = 0.0;
-  meridian_point(part, s * part->length, at, natural);
-  hermite(placed, s, x, normal, &curvature);
-  if (part->turn == 0.0) {
-    curvature = 0.0;
+static enum status push_through(const struct snap_spec *spec, const struct bellows *bellows,
+                                struct axi_model *model, const struct continuation_options *options,
+                                struct axi_state *state, struct error *error) {
+  struct push push = {spec, bellows, false};
+  double radius = spec->crest_radius;
+  struct axi_ramp ramp = {
+      .to = {.force = material_shear_modulus(&spec->silicone) * radius * radius}};
+  enum status status =
+      axi_follow(model, &ramp, options, -1, NULL, until_turned, &push, state, error);
+  if (status == STATUS_OK && !push.found) {
+    status = error_set(error, STATUS_UNSTABLE_PATH, NULL,
+                       "the shells do not turn inside out as the body is pushed");
   }
-  for (int j = 0; j < b->column_count; j++) {
-    int node = bellows_node(b, row, j);
-    const double *before = b->mesh.position + 2 * (size_t)node;
-    double t = (before[0] - at[0]) * natural[0] + (before[1] - at[1]) * natural[1];
-    double kept = squeezed(t, curvature);
-    for (int i = 0; i < 2; i++) {
-      u[2 * node + i] = x[i] + kept * normal[i] - before[i];
-    }
+  return status;
+}
+
+/* Gives the PET its modulus back at the length that was reached, then lets the body go. */
+static enum status let_go(struct bellows *bellows, struct axi_model *model, double modulus,
+                          const struct continuation_options *options, struct axi_state *state,
+                          struct error *error) {
+  static const double full = 1.0;
+  struct axi_load held = {.elongation = state->elongation};
+  enum status status = change(&bellows->mesh.region[BELLOWS_PET].c[0], modulus, model, &held, true,
+                              options, state, error);
+  if (status == STATUS_OK) {
+    struct continuation_options path = *options;
+    struct axi_ramp ramp = {.from = {.force = state->force}};
+    path.target_count = 1;
+    path.target = &full;
+    state->lambda = 0.0;
+    status = axi_follow(model, &ramp, &path, 1, NULL, until_reached, NULL, state, error);
   }
+  return status;
 }
 
-/* Share of the part at a row. */
-static double share(const struct bellows *b, int part, int row) {
-  int cells = (b->row[part + 1] - b->row[part]) / 2, k = (row - b->row[part]) / 2;
-  const struct meridian_part *p = &b->line.part[part];
-  double from = bellows_boundary(p, cells, k);
-  return (row - b->row[part]) % 2 == 0 ? from : 0.5 * (from + bellows_boundary(p, cells, k + 1));
-}
+/* ---- the folded body ---------------------------------------------------------------------- */
 
-static bool is_turned(const struct meridian *m, int part, int from, int to) {
-  const struct meridian_part *p = &m->part[part];
-  return part < m->count && p->snapping && p->pair >= from && p->pair < to;
-}
-
-/* Height that a hinge rises when its shells lie almost face to face. */
-static double folded_rise(const struct snap_spec *spec, const struct meridian_part *part,
-                          double outwards) {
-  double distance = clearance * spec->wall, angle = spec->supporting_angle;
-  (void)part;
-  return (distance + outwards * sin(angle)) / cos(angle);
-}
-
-void folded_guess(const struct snap_spec *spec, const struct bellows *b, int from, int to,
-                  double *u) {
-  const struct meridian *m = &b->line;
-  double z = 0.0;
-  for (int i = 0; i < m->count; i++) {
-    const struct meridian_part *p = &m->part[i];
-    double end[2], normal[2], rise;
-    meridian_point(p, p->length, end, normal);
-    bool turned = is_turned(m, i, from, to);
-    bool before = i > 0 && is_turned(m, i - 1, from, to), after = is_turned(m, i + 1, from, to);
-    struct placed placed = {
-        .direction = {p->direction, p->direction + p->turn}, .start = {p->r, z}, .pull = p->length};
-    placed.direction[0] = before ? 2.0 * M_PI - p->direction : p->direction;
-    placed.direction[1] = after ? 2.0 * M_PI - (p->direction + p->turn) : p->direction + p->turn;
-    rise = end[1] - p->z;
-    if (turned) {
-      placed.direction[0] = placed.direction[1] = 2.0 * M_PI - p->direction;
-      rise = -rise;
-    } else if (before || after) {
-      rise = folded_rise(spec, p, end[0] - p->r);
-      placed.pull = 2.0 * clearance * spec->wall;
-    }
-    z += rise;
-    placed.end[0] = end[0];
-    placed.end[1] = z;
-    for (int row = b->row[i]; row <= b->row[i + 1]; row++) {
-      place_row(b, p, &placed, row, share(b, i, row), u);
-    }
+/* From one pressure to another. */
+static enum status inflate(struct axi_model *model, double from, double to,
+                           const struct continuation_options *options, struct axi_state *state,
+                           struct error *error) {
+  static const double full = 1.0;
+  struct continuation_options path = *options;
+  struct axi_ramp ramp = {.from = {.pressure = from}, .to = {.pressure = to}};
+  if (from == to) {
+    return STATUS_OK;
   }
+  path.target_count = 1;
+  path.target = &full;
+  state->lambda = 0.0;
+  return axi_follow(model, &ramp, &path, 1, NULL, until_reached, NULL, state, error);
+}
+
+/* From folded foam to silicone at a pressure that keeps the hinges open, and back to none. */
+static enum status to_silicone(const struct push *push, struct bellows *bellows,
+                               struct axi_model *model, double pressure,
+                               const struct continuation_options *options, struct axi_state *state,
+                               struct error *error) {
+  const struct snap_spec *spec = push->spec;
+  struct axi_load load = {.pressure = pressure};
+  double *ratio = &bellows->mesh.region[BELLOWS_SILICONE].bulk_ratio;
+  enum status status = inflate(model, 0.0, pressure, options, state, error);
+  if (status == STATUS_OK) {
+    status = change(ratio, spec->silicone.bulk_ratio, model, &load, false, options, state, error);
+  }
+  if (status == STATUS_OK && is_folded(push, state)) {
+    status = inflate(model, pressure, 0.0, options, state, error);
+  }
+  if (status == STATUS_OK && !is_folded(push, state)) {
+    status = error_set(error, STATUS_UNSTABLE_PATH, NULL,
+                       "shells turned inside out do not stay so without load");
+  }
+  return status;
+}
+
+/* Tries one pressure after another. */
+static enum status try_pressures(const struct push *push, struct bellows *bellows,
+                                 struct axi_model *model,
+                                 const struct continuation_options *options,
+                                 struct axi_state *state, struct error *error) {
+  static const double part[] = {1.0 / 3.0, 0.25, 0.4, 0.5, 0.15, 0.65, 0.0};
+  enum { PARTS = sizeof part / sizeof *part };
+  struct axi_state start;
+  struct material_spec *silicone = &bellows->mesh.region[BELLOWS_SILICONE];
+  double ratio = silicone->bulk_ratio;
+  enum status status = axi_state_create(model, &start, error);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  axi_state_copy(model, state, &start);
+  status = STATUS_DIVERGED;
+  for (int i = 0; i < PARTS && may_try_again(status); i++) {
+    silicone->bulk_ratio = ratio;
+    axi_state_copy(model, &start, state);
+    status =
+        to_silicone(push, bellows, model, part[i] * push->spec->pressure_to, options, state, error);
+  }
+  axi_state_destroy(&start);
+  return status;
+}
+
+enum status folded_state(const struct snap_spec *spec, struct bellows *bellows,
+                         struct axi_model *model, const struct folded_limits *limits,
+                         struct axi_state *state, struct error *error) {
+  struct push push = {spec, bellows, false};
+  struct continuation_options options = axi_defaults(model);
+  options.deadline_s = limits->deadline_s;
+  options.cancelled = limits->cancelled;
+  struct material_spec *region = bellows->mesh.region;
+  region[BELLOWS_SILICONE].bulk_ratio = fmin(foam, spec->silicone.bulk_ratio);
+  region[BELLOWS_PET].c[0] *= soft;
+  enum status status = push_through(spec, bellows, model, &options, state, error);
+  if (status == STATUS_OK) {
+    status = let_go(bellows, model, spec->pet.c[0], &options, state, error);
+  }
+  if (status == STATUS_OK) {
+    status = try_pressures(&push, bellows, model, &options, state, error);
+  }
+  region[BELLOWS_SILICONE] = spec->silicone;
+  region[BELLOWS_PET] = spec->pet;
+  return status;
 }

@@ -1,14 +1,28 @@
-/* A first guess of the compressed state. */
+/* The compressed state of a bellows, from nothing.
+ *
+ * Nearly incompressible silicone creases in the hinges long before the shells turn inside out, and
+ * the path from the natural state is lost in creases. So a body of foam with soft PET is pushed
+ * until the shells are inside out; at that length the PET gets its modulus back, and the body is
+ * let go. Under a pressure that keeps the hinges open the foam is then made stiffer against changes
+ * of volume step by step, until it is the silicone of the job; at last the pressure is taken away.
+ */
 #ifndef PNEULAB_SNAP_FOLDED_H
 #define PNEULAB_SNAP_FOLDED_H
 
+#include "solver/axi/model.h"
 #include "solver/snap/bellows.h"
 
-/* Displacements u (2 node + i) that turn the snapping shells of the pairs `from` to `to` - 1 inside
- * out: each is mirrored about a plane across the axis, so that no circle on it changes, the other
- * shells are moved along the axis as they are, and the hinges are bent between them (cubic curves
- * with the shells' directions), thinned where they would fold. */
-void folded_guess(const struct snap_spec *spec, const struct bellows *bellows, int from, int to,
-                  double *u);
+/* When to stop. */
+struct folded_limits {
+  double deadline_s; /* on clock_wall_s; 0: none */
+  bool (*cancelled)(void *context);
+};
+
+/* Equilibrium without load with all snapping shells inside out. The model is that of the bellows,
+ * whose silicone is foam on the way and its own again at the end. STATUS_OK; STATUS_UNSTABLE_PATH
+ * when shells do not stay inside out; or as axi_follow and axi_equilibrium. */
+enum status folded_state(const struct snap_spec *spec, struct bellows *bellows,
+                         struct axi_model *model, const struct folded_limits *limits,
+                         struct axi_state *state, struct error *error);
 
 #endif

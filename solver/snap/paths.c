@@ -39,21 +39,11 @@ static bool until_compressed(struct snap_walk *walk, const struct axi_state *sta
   return state->elongation < limit && state->elongation > -limit;
 }
 
-/* From an inverted shape by Newton's method. */
-static enum status compressed_by_guess(struct snap_study *study, struct axi_state *state,
-                                       struct error *error) {
-  struct snap_body *body = &study->body;
-  struct continuation_options options = body->options(body->self);
-  struct axi_load none = {.pressure = 0.0};
-  options.iterations_max = 100;
-  options.deadline_s = study->deadline_s;
-  options.cancelled = study->cancelled;
-  body->fold(body->self, state);
-  enum status status = body->equilibrium(body->self, &none, false, &options, state, error);
-  if (status == STATUS_OK && !is_compressed(study, state)) {
-    status = error_set(error, STATUS_UNSTABLE_PATH, NULL,
-                       "shells turned inside out do not stay so without load");
-  }
+/* By way of foam. */
+static enum status compressed_by_folding(struct snap_study *study, struct axi_state *state,
+                                         struct error *error) {
+  struct folded_limits limits = {study->deadline_s, study->cancelled};
+  enum status status = study->body.fold(study->body.self, &limits, state, error);
   return status == STATUS_OK ? snap_study_keep(study, SNAP_COMPRESSED, state, error) : status;
 }
 
@@ -87,11 +77,12 @@ enum status snap_find_compressed(struct snap_study *study, struct error *error) 
   if (status != STATUS_OK) {
     return status;
   }
-  status = compressed_by_guess(study, &state, &first);
-  if (status != STATUS_OK && !snap_is_final(status)) {
-    status = compressed_by_force(study, &state, error);
-  } else if (status != STATUS_OK) {
+  status = compressed_by_folding(study, &state, &first);
+  if (status != STATUS_OK &&
+      (snap_is_final(status) || compressed_by_force(study, &state, error) != STATUS_OK)) {
     *error = first;
+  } else {
+    status = STATUS_OK;
   }
   axi_state_destroy(&state);
   if (status == STATUS_OK) {
