@@ -55,6 +55,8 @@ struct finding {
  *   "value" JSON pointer into that result; its error estimate is beside it as KEY_error
  *   "key"   instead: a key of the samples, with "at_kPa" (interpolated), "reaches" (gives the
  *           pressure in kPa, interpolated), or "extreme": "largest" or "smallest" over all samples
+ *   "path"   the points of this path in place of the samples
+ *   "last"   true: where the pressure is passed for the last time, not the first
  *   "factor" to be multiplied with; 1 unless given
  * or one of these, with two rules each:
  *   "difference" the first less the second

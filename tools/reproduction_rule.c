@@ -50,17 +50,20 @@ static double number_of(const json_t *object, const char *key) {
   return json_is_number(value) ? json_number_value(value) : NAN;
 }
 
-/* Value of `y` where `x` first passes `at`, linear between samples; NAN when it does not. */
-static double interpolate(const json_t *samples, const char *x, const char *y, double at) {
-  for (size_t i = 0; i + 1 < json_array_size(samples); i++) {
+/* Value of `y` where `x` passes `at`, the first or the last time, linear between samples; NAN when
+ * it does not. */
+static double interpolate(const json_t *samples, const char *x, const char *y, double at,
+                          bool last) {
+  double found = NAN;
+  for (size_t i = 0; i + 1 < json_array_size(samples) && (last || isnan(found)); i++) {
     const json_t *a = json_array_get(samples, i), *b = json_array_get(samples, i + 1);
     double x0 = number_of(a, x), x1 = number_of(b, x);
     if ((x0 - at) * (x1 - at) <= 0 && x0 != x1) {
       double t = (at - x0) / (x1 - x0);
-      return (1 - t) * number_of(a, y) + t * number_of(b, y);
+      found = (1 - t) * number_of(a, y) + t * number_of(b, y);
     }
   }
-  return NAN;
+  return found;
 }
 
 static double extreme(const json_t *samples, const char *key, bool largest) {
@@ -74,13 +77,30 @@ static double extreme(const json_t *samples, const char *key, bool largest) {
   return found;
 }
 
+/* The samples of a result, or the points of one of its paths. */
+static const json_t *samples_of(const json_t *result, const char *path) {
+  size_t index;
+  const json_t *entry;
+  if (!path) {
+    return json_object_get(result, "samples");
+  }
+  json_array_foreach(json_object_get(result, "paths"), index, entry) {
+    const char *name = json_string_value(json_object_get(entry, "name"));
+    if (name && strcmp(name, path) == 0) {
+      return json_object_get(entry, "points");
+    }
+  }
+  return NULL;
+}
+
 static double from_samples(const json_t *result, const json_t *rule, const char *key) {
-  const json_t *samples = json_object_get(result, "samples");
+  const json_t *samples = samples_of(result, json_string_value(json_object_get(rule, "path")));
   const char *end = json_string_value(json_object_get(rule, "extreme"));
   double at = number_of(rule, "at_kPa"), reaches = number_of(rule, "reaches");
+  bool last = json_is_true(json_object_get(rule, "last"));
   return end          ? extreme(samples, key, strcmp(end, "largest") == 0)
-         : !isnan(at) ? interpolate(samples, "pressure_kPa", key, at)
-                      : interpolate(samples, key, "pressure_kPa", reaches);
+         : !isnan(at) ? interpolate(samples, "pressure_kPa", key, at, last)
+                      : interpolate(samples, key, "pressure_kPa", reaches, last);
 }
 
 /* Our value of a rule that names a result. */

@@ -157,6 +157,10 @@ if [ -x "$build/tools/reproduction" ]; then
         { "from": "multicurvature/two", "value": "/metrics/bending_angle_deg" },
         { "from": "multicurvature/two", "value": "/metrics/bending_angle_deg" },
         { "from": "tapered/other", "key": "bending_angle_deg", "at_kPa": 0 } ] } },
+    { "paper": "multicurvature", "what": "half of it at last", "published": 10, "relation": "below",
+      "ours": { "from": "multicurvature/two", "key": "bending_angle_deg", "at_kPa": 4, "last": true } },
+    { "paper": "multicurvature", "what": "no path", "published": 1,
+      "ours": { "from": "multicurvature/two", "path": "axial", "key": "bending_angle_deg", "at_kPa": 4 } },
     { "paper": "tapered", "what": "another's", "published": "not given",
       "ours": { "from": "tapered/other", "value": "/metrics/bending_angle_deg" } },
     { "paper": "multicurvature", "what": "nobody's", "published": 1,
@@ -197,6 +201,9 @@ END
   grep -q "^| angle | 3.5 deg | $(printf %.4g "$angle") deg | .* %) | not estimated |$" "$document" ||
     fail "a value: $(cat "$document")"
   grep -q '^| half of it | below 10 | .* | holds | not estimated |$' "$document" || fail "a bound"
+  check "the first time and the last" "$(grep '^| half of it |' "$document" | cut -d'|' -f4)" \
+    "$(grep '^| half of it at last |' "$document" | cut -d'|' -f4)"
+  grep -q '^| no path | 1 | missing: succeeded |' "$document" || fail "a path that is not there"
   grep -q "^| nobody's | 1 | missing: multicurvature/three" "$document" || fail "a missing value"
   grep -q '^| gap | rising | 1: .*, 2: .* | yes |$' "$document" || fail "a trend"
   grep -q '^| groups | falling | 1: .*, 2: .*, 3: .* | yes |$' "$document" || fail "groups"
