@@ -142,11 +142,9 @@ static enum status locate(struct follower *f, int i, double step, struct error *
   const struct continuation_options *o = f->work.options;
   double a = 0, b = 1, va = f->value[i], vb = f->value[f->count + i];
   double *value = f->value + 2 * f->count;
+  int side = 0;
   for (int k = 0; k < 30; k++) {
-    double part = a + (b - a) * fmin(0.95, fmax(0.05, va / (va - vb)));
-    if (k == 0 && i > 0 && i <= o->target_count) {
-      part = fmax(1e-6, va / (va - vb));
-    }
+    double part = a + (b - a) * fmin(1 - 1e-6, fmax(1e-6, va / (va - vb)));
     enum status status = between(f, step, part, error);
     if (status != STATUS_OK) {
       return status;
@@ -160,12 +158,13 @@ static enum status locate(struct follower *f, int i, double step, struct error *
     if (before) {
       a = part;
       va = value[i];
-      vb *= 0.5;
+      vb *= side > 0 ? 0.5 : 1;
     } else {
       b = part;
       vb = value[i];
-      va *= 0.5;
+      va *= side < 0 ? 0.5 : 1;
     }
+    side = before ? 1 : -1; /* which end moved: the other one's weight falls when it stays twice */
   }
   if (i > 0 && i <= o->target_count) {
     return land(f, o->target[i - 1], error);

@@ -44,55 +44,113 @@ static void pinch(const struct axi_mesh *mesh, double close, double *u) {
   }
 }
 
-static const double closings[] = {0.15, 0.18, 0.2, 0.25};
+/* A tube about the axis, whose inside is pressed almost to it. */
+static void narrow_map(const void *context, double s, double t, double x[2]) {
+  (void)context;
+  x[0] = 0.05 + 0.8 * s;
+  x[1] = t;
+}
 
-START_TEST(forces_are_the_gradient_and_tangent_its_derivative) {
+static void press_to_axis(const struct axi_mesh *mesh, double close, double *u) {
+  for (int i = 0; i < mesh->node_count; i++) {
+    double r = mesh->position[2 * i], z = mesh->position[2 * i + 1];
+    u[2 * i] = -0.05 * close * (1 + 0.01 * sin(9 * z)) * (1 - r) / 0.95;
+    u[2 * i + 1] = 0.01 * cos(3 * r + 5 * z);
+  }
+}
+
+enum place { CHANNEL, IMAGE, AXIS };
+
+/* In the channel, with the image one period away, at the axis. */
+static const struct {
+  enum place place;
+  double close;
+  bool touching;
+} squeezes[] = {
+    {CHANNEL, 0.15, false}, {CHANNEL, 0.18, true}, {CHANNEL, 0.2, true}, {CHANNEL, 0.25, true},
+    {IMAGE, -0.01, true},   {IMAGE, 0.05, false},  {AXIS, 0.2, false},   {AXIS, 0.96, true},
+};
+
+/* The last node of the upper arm is one period ahead of the first one of the lower arm: the arms of
+ * neighbours lie on each other. */
+static void repeat(const struct revolution *body, struct axi_mesh *mesh) {
+  int across = 2 * body->cells[0], along = 2 * body->cells[1];
+  int first = revolution_node(body, across, 0), last = revolution_node(body, across, along);
+  mesh->hold[2 * last + 1] = AXI_AHEAD;
+  mesh->master[last] = first;
+}
+
+static double difference(int n, const double *before, const double *behind, double h,
+                         const double *exact) {
+  double wrong = 0, size = 0;
+  for (int i = 0; i < n; i++) {
+    wrong += pow((behind[i] - before[i]) / (2 * h) - exact[i], 2);
+    size += exact[i] * exact[i];
+  }
+  return sqrt(wrong / size);
+}
+
+/* The potential's derivatives in a direction against central differences. */
+static void check_derivatives(struct axi_model *model, double *x, int number) {
   struct error error = {.status = STATUS_OK};
-  struct axi_mesh mesh;
-  struct axi_model *model = NULL;
-  struct revolution body = {
-      .cells = {2, 16},
-      .map = channel_map,
-      .material = {.model = MATERIAL_NEO_HOOKE, .terms = 1, .c = {1}, .bulk_ratio = 20}};
-  ok(revolution_mesh(&body, &mesh, &error), &error);
-  ok(axi_model_create(&mesh, &(struct axi_model_options){.contact = true}, &model, &error), &error);
   int n = axi_model_size(model);
-  double *room = calloc(7 * (size_t)n, sizeof *room), potential[2], value, slope = 0;
-  double *x = room, *d = room + n, *r = room + 2 * n, *product = room + 3 * n;
-  double *side[2] = {room + 4 * n, room + 5 * n}, *u = room + 6 * n;
+  double *room = calloc(5 * (size_t)n, sizeof *room), potential[2], value, slope = 0;
+  double *d = room, *r = room + n, *product = room + 2 * n;
+  double *side[2] = {room + 3 * n, room + 4 * n};
   struct axi_load load = {.pressure = 0};
-  pinch(&mesh, closings[_i], u);
-  axi_model_gather(model, u, x);
+  const double h = 1e-6;
   for (int i = 0; i < n; i++) {
     d[i] = cos(1.7 * i);
   }
   ok(axi_evaluate(model, x, &load, &value, r, d, product, &error), &error);
-  const double h = 1e-6;
   for (int k = 0; k < 2; k++) {
     for (int i = 0; i < n; i++) {
       x[i] += (k ? 2 * h : -h) * d[i];
     }
     ok(axi_evaluate(model, x, &load, &potential[k], side[k], NULL, NULL, &error), &error);
   }
-  double wrong = 0, size = 0;
   for (int i = 0; i < n; i++) {
+    x[i] -= h * d[i];
     slope += r[i] * d[i];
-    wrong += pow((side[1][i] - side[0][i]) / (2 * h) - product[i], 2);
-    size += product[i] * product[i];
   }
   double first = fabs((potential[1] - potential[0]) / (2 * h) / slope - 1);
-  ck_assert_msg(first < 1e-6, "closed by %g: gradient %g", closings[_i], first);
-  ck_assert_msg(sqrt(wrong / size) < 1e-7, "closed by %g: tangent %g", closings[_i],
-                sqrt(wrong / size));
-  struct axi_state state;
-  ok(axi_state_create(model, &state, &error), &error);
-  for (int i = 0; i < n; i++) {
-    state.x[i] = x[i];
-  }
-  ok(axi_assess(model, false, &state, NULL, &error), &error);
-  ck_assert_int_eq(state.touching, _i > 0);
-  axi_state_destroy(&state);
+  double second = difference(n, side[0], side[1], h, product);
+  ck_assert_msg(first < 1e-6, "squeeze %d: gradient %g", number, first);
+  ck_assert_msg(second < 1e-7, "squeeze %d: tangent %g", number, second);
   free(room);
+}
+
+START_TEST(forces_are_the_gradient_and_tangent_its_derivative) {
+  struct error error = {.status = STATUS_OK};
+  struct axi_mesh mesh;
+  struct axi_model *model = NULL;
+  struct axi_state state;
+  enum place place = squeezes[_i].place;
+  double close = squeezes[_i].close;
+  struct revolution body = {
+      .cells = {2, 16},
+      .map = place == AXIS ? narrow_map : channel_map,
+      .material = {.model = MATERIAL_NEO_HOOKE, .terms = 1, .c = {1}, .bulk_ratio = 20}};
+  ok(revolution_mesh(&body, &mesh, &error), &error);
+  if (place == IMAGE) {
+    repeat(&body, &mesh);
+  }
+  ok(axi_model_create(&mesh, &(struct axi_model_options){.contact = true}, &model, &error), &error);
+  ok(axi_state_create(model, &state, &error), &error);
+  if (place == AXIS) {
+    press_to_axis(&mesh, close, state.u);
+  } else {
+    pinch(&mesh, place == CHANNEL ? close : 0, state.u);
+  }
+  axi_model_gather(model, state.u, state.x);
+  if (place == IMAGE) {
+    ck_assert(axi_model_has_elongation(model));
+    state.x[axi_model_size(model) - 1] = close;
+  }
+  check_derivatives(model, state.x, _i);
+  ok(axi_assess(model, false, &state, NULL, &error), &error);
+  ck_assert_int_eq(state.touching, squeezes[_i].touching);
+  axi_state_destroy(&state);
   axi_model_destroy(model);
   axi_mesh_release(&mesh);
 }
@@ -296,7 +354,7 @@ static Suite *contact_suite(void) {
   Suite *suite = suite_create("contact of bodies of revolution");
   TCase *derivatives = tcase_create("derivatives"), *rings = tcase_create("rings");
   tcase_add_loop_test(derivatives, forces_are_the_gradient_and_tangent_its_derivative, 0,
-                      sizeof closings / sizeof *closings);
+                      sizeof squeezes / sizeof *squeezes);
   tcase_add_test(rings, rings_pressed_together_as_hertz_says);
   tcase_set_timeout(rings, 120);
   suite_add_tcase(suite, derivatives);
