@@ -57,8 +57,11 @@ static enum status add_ladder(struct bundle *bundle, const json_t *result, const
 /* Adds the equilibrium paths under pressure. */
 static enum status add_paths(struct bundle *bundle, const json_t *result, const char *key,
                              struct chart_series like, struct error *error) {
-  const struct snap_look look = {
-      .x_key = "pressure_kPa", .y_key = key, .colour = like.colour, .stable_name = like.name};
+  const struct snap_look look = {.x_key = "pressure_kPa",
+                                 .y_key = key,
+                                 .colour = like.colour,
+                                 .stable_name = like.name,
+                                 .width = 2.2};
   bool named[2] = {false, false};
   enum status status = STATUS_OK;
   size_t index, before = bundle->count;

@@ -10,7 +10,7 @@
 enum { SHAPES_MOST = 8, OUTLINE_MOST = 20000 };
 
 /* Design units: words under a shape, space between shapes, edge of the sheet. */
-enum { WORDS = 40, GAP = 26, MARGIN = 26, SCALE_BAR = 44 };
+enum { WORDS = 40, GAP = 34, MARGIN = 26, SCALE_BAR = 44 };
 
 /* Meridians in some states, and how far they reach. */
 struct gallery {
@@ -91,6 +91,30 @@ static void add_outline(cairo_t *cr, const json_t *outline, double side, double 
   cairo_close_path(cr);
 }
 
+/* Fills what lies between both sides, so that the eye takes them for one body. */
+static void fill_between(struct canvas *canvas, const json_t *shape, double x, double y,
+                         double scale) {
+  cairo_t *cr = canvas->cr;
+  size_t r, i;
+  const json_t *region, *point;
+  json_array_foreach(json_object_get(shape, "regions"), r, region) {
+    struct point before = {NAN, NAN};
+    json_array_foreach(json_object_get(region, "outline_mm"), i, point) {
+      struct point now = {scale * data_element(point, 0), y - scale * data_element(point, 1)};
+      if (isfinite(now.x + now.y + before.x + before.y) && i < OUTLINE_MOST) {
+        cairo_move_to(cr, x + before.x, before.y);
+        cairo_line_to(cr, x + now.x, now.y);
+        cairo_line_to(cr, x - now.x, now.y);
+        cairo_line_to(cr, x - before.x, before.y);
+        cairo_close_path(cr);
+        cairo_fill_preserve(cr);
+        cairo_stroke(cr);
+      }
+      before = now;
+    }
+  }
+}
+
 /* Fills the regions of one kind on both sides of the axis. */
 static void fill_regions(struct canvas *canvas, const json_t *shape, bool of_pet, double x,
                          double y, double scale) {
@@ -144,6 +168,9 @@ static void draw_shape(struct canvas *canvas, const struct gallery *gallery,
   double height = wall->scale * (gallery->high - gallery->low);
   double bottom = middle + height / 2, y = bottom + wall->scale * gallery->low;
   const double chain[4] = {8 * u, 3 * u, 1.5 * u, 3 * u};
+  canvas_set_colour(canvas, (struct colour){0.945, 0.955, 0.965});
+  cairo_set_line_width(canvas->cr, 1);
+  fill_between(canvas, gallery->shapes[place], x, y, wall->scale);
   fill_regions(canvas, gallery->shapes[place], false, x, y, wall->scale);
   fill_regions(canvas, gallery->shapes[place], true, x, y, wall->scale);
   cairo_set_dash(canvas->cr, chain, 4, 0);

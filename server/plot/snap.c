@@ -35,7 +35,7 @@ static enum status add_stretch(struct bundle *bundle, const struct point *points
                                struct error *error) {
   const char *name = stable ? look->stable_name : look->unstable_name;
   struct chart_series like = {.colour = look->colour,
-                              .width = stable ? 2.2 : 1.5,
+                              .width = stable ? look->width : 1.5,
                               .dash = stable ? DASH_SOLID : DASH_SHORT,
                               .name = named[stable] ? NULL : name};
   if (count < 2) {

@@ -15,6 +15,7 @@ struct snap_look {
   const char *x_key, *y_key;
   struct colour colour;
   const char *stable_name, *unstable_name;
+  double width; /* of the solid lines, design units */
 };
 
 /* The load of a path: its pressure unless that stays what it was, within a thousandth of a kPa. */

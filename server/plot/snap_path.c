@@ -66,11 +66,13 @@ static void label_event(const json_t *metrics, const char *type, struct point at
 }
 
 /* Adds the markers of one kind of event. */
-static enum status add_events(const json_t *result, const struct kind *kind, struct sheet *sheet,
-                              struct error *error) {
+static enum status add_events(const json_t *result, const struct kind *kind, bool shown,
+                              struct sheet *sheet, struct error *error) {
   const json_t *events = json_object_get(result, "events");
-  struct chart_series like = {
-      .colour = kind->colour, .marker = kind->marker, .hollow = kind->hollow, .name = kind->name};
+  struct chart_series like = {.colour = kind->colour,
+                              .marker = kind->marker,
+                              .hollow = kind->hollow,
+                              .name = shown ? NULL : kind->name};
   enum status status = STATUS_OK;
   size_t index;
   const json_t *event;
@@ -103,29 +105,43 @@ static size_t find_paths(const json_t *result, enum snap_load load,
   return count;
 }
 
-/* Reads the paths and events of one chart. Several paths have a colour and a name each. */
-static enum status read_sheet(const json_t *result, struct sheet *sheet, struct error *error) {
-  static const size_t colours[PATHS_MOST] = {0, 4, 6, 5};
-  const json_t *paths[PATHS_MOST];
+/* Adds the paths of one chart. Those after the first run along parts of it: they lie below, wide
+ * and light. */
+static enum status add_paths(const json_t *const paths[], bool words, struct sheet *sheet,
+                             struct error *error) {
+  static const struct colour light[PATHS_MOST] = {
+      {0, 0, 0}, {0.72, 0.87, 0.96}, {0.98, 0.85, 0.60}, {0.93, 0.80, 0.88}};
   enum status status = STATUS_OK;
-  size_t count = find_paths(result, sheet->load, paths);
-  bool unstable_named = false;
-  for (size_t i = 0; i < count && status == STATUS_OK; i++) {
-    struct snap_look look = {
-        .x_key = "h_mm",
-        .y_key = sheet->y_key,
-        .colour = colour_series(colours[i]),
-        .stable_name = count > 1 ? json_string_value(json_object_get(paths[i], "name")) : "stable",
-        .unstable_name = "unstable"};
-    bool named[2] = {unstable_named, false};
+  for (size_t i = sheet->paths; i-- > 0 && status == STATUS_OK;) {
+    const char *name = json_string_value(json_object_get(paths[i], "name"));
+    struct snap_look look = {.x_key = "h_mm",
+                             .y_key = sheet->y_key,
+                             .colour = i ? light[i] : colour_series(0),
+                             .stable_name = i       ? name
+                                            : words ? "stable"
+                                                    : NULL,
+                             .unstable_name = i || !words ? NULL : "unstable",
+                             .width = i ? 6 : 2.2};
+    bool named[2] = {false, false};
     status = snap_add_path(&sheet->bundle, paths[i], &look, named, error);
-    unstable_named = named[0];
   }
+  return status;
+}
+
+/* Reads the paths and events of one chart. shown: the kinds of events that a legend names already.
+ */
+static enum status read_sheet(const json_t *result, bool shown[KINDS], struct sheet *sheet,
+                              struct error *error) {
+  const json_t *paths[PATHS_MOST];
+  bool words = sheet->load == SNAP_PRESSURE || !shown[0];
+  sheet->paths = find_paths(result, sheet->load, paths);
+  enum status status = add_paths(paths, words, sheet, error);
   for (size_t k = 0; k < KINDS && status == STATUS_OK; k++) {
-    status = add_events(result, &kinds[k], sheet, error);
+    size_t before = sheet->bundle.count;
+    status = add_events(result, &kinds[k], shown[k], sheet, error);
+    shown[k] = shown[k] || sheet->bundle.count > before;
   }
-  sheet->paths = count;
-  return status == STATUS_OK && count > 0 ? bundle_add_zero(&sheet->bundle, error) : status;
+  return status == STATUS_OK && sheet->paths > 0 ? bundle_add_zero(&sheet->bundle, error) : status;
 }
 
 enum status draw_snap_path(struct canvas *canvas, const struct plot_input *inputs, size_t count,
@@ -137,12 +153,13 @@ enum status draw_snap_path(struct canvas *canvas, const struct plot_input *input
       {.load = SNAP_FORCE, .y_key = "force_N", .y_label = "Axial force (N)", .unit = "N"}};
   struct chart charts[PANELS];
   char subtitle[DATA_HEADING], notice[DATA_HEADING];
+  bool shown[KINDS] = {false};
   enum status status = STATUS_OK;
   (void)count;
   data_subtitle(&inputs[0], subtitle);
   data_notice(inputs[0].result, notice);
   for (size_t i = 0; i < PANELS && status == STATUS_OK; i++) {
-    status = read_sheet(inputs[0].result, &sheets[i], error);
+    status = read_sheet(inputs[0].result, shown, &sheets[i], error);
     charts[i] = (struct chart){.title = i == 0 ? "Equilibrium under pressure and under axial force"
                                                : "Equilibrium under axial force",
                                .subtitle = subtitle,

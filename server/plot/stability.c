@@ -65,6 +65,9 @@ static void read_garland(struct garland *g) {
     count = count < HARMONICS_MOST ? count : HARMONICS_MOST;
     g->harmonics = count > g->harmonics ? count : g->harmonics;
     double from = isfinite(before) ? before : pressure;
+    if (g->sense * pressure < g->sense * from && !is_lost(state, 0)) {
+      return; /* past a limit point between the states */
+    }
     for (size_t n = 0; n < count; n++) {
       if (isnan(g->lost_kPa[n]) && is_lost(state, n)) {
         /* beyond the limit point the pressure has turned back */
@@ -77,6 +80,21 @@ static void read_garland(struct garland *g) {
       return;
     }
     before = g->reached_kPa = pressure;
+  }
+}
+
+/* The axisymmetric harmonic is lost at the first limit point. */
+static void add_limit(const json_t *result, struct garland *g) {
+  const json_t *event;
+  size_t index;
+  json_array_foreach(json_object_get(result, "events"), index, event) {
+    const char *type = json_string_value(json_object_get(event, "type"));
+    double pressure;
+    if (type && strcmp(type, "limit point") == 0 && is_of_path(g, event, &pressure)) {
+      g->lost_kPa[0] = pressure;
+      g->half_width_kPa[0] = 0;
+      return;
+    }
   }
 }
 
@@ -105,8 +123,9 @@ static enum status add_garland(const struct garland *g, size_t place, const char
   return status == STATUS_OK ? bundle_add(bundle, like, kept, kept_count, error) : status;
 }
 
-/* The names of the paths whose harmonics were tested. */
-static size_t find_paths(const json_t *list, struct garland garlands[PATHS_MOST]) {
+/* The names of the paths under pressure whose harmonics were tested. */
+static size_t find_paths(const json_t *result, struct garland garlands[PATHS_MOST]) {
+  const json_t *list = json_object_get(result, "harmonics");
   size_t count = 0, index;
   const json_t *state;
   json_array_foreach(list, index, state) {
@@ -115,7 +134,9 @@ static size_t find_paths(const json_t *list, struct garland garlands[PATHS_MOST]
     while (path && k < count && strcmp(garlands[k].path, path) != 0) {
       k++;
     }
-    if (path && k == count && count < PATHS_MOST) {
+    const json_t *followed = snap_path(result, path);
+    bool by_force = followed && snap_load_of(followed) == SNAP_FORCE;
+    if (path && k == count && count < PATHS_MOST && !by_force) {
       garlands[count++] = (struct garland){.list = list, .path = path};
     }
   }
@@ -160,10 +181,11 @@ enum status draw_stability(struct canvas *canvas, const struct plot_input *input
   size_t label_count = 0;
   char subtitle[DATA_HEADING], notice[DATA_HEADING];
   enum status status = STATUS_OK;
-  size_t paths = find_paths(json_object_get(result, "harmonics"), garlands);
+  size_t paths = find_paths(result, garlands);
   (void)count;
   for (size_t i = 0; i < paths && status == STATUS_OK; i++) {
     read_garland(&garlands[i]);
+    add_limit(result, &garlands[i]);
     label_count += label_first(&garlands[i], &labels[label_count]);
     snprintf(names[i], sizeof names[i], "%.60s, not lost up to here", garlands[i].path);
     status = add_garland(&garlands[i], i, names[i], &bundle, error);
