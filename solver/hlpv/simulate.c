@@ -14,6 +14,8 @@
 #define UNBOUNDED 1e6
 /* Part of a state's size that decides nothing. */
 #define GRAZING 1e-6
+/* Part of the time within which a guard is passed at the time of a corner. */
+#define AT_CORNER 1e-11
 
 enum { STEPS_BETWEEN_LOOKS = 256 };
 
@@ -128,6 +130,21 @@ static int passed_guard(struct simulation *s, const int root[HLPV_TRANSITIONS_MA
   return -1;
 }
 
+/* The first guard that the state reaches at the corner where it is, or within round-off behind it;
+ * or -1. */
+static int guard_at_corner(const struct simulation *s) {
+  for (int i = 0; i < s->spec->transition_count; i++) {
+    const struct hlpv_transition *transition = &s->spec->transition[i];
+    double missing = transition->direction * (transition->level - s->now.x[transition->quantity]);
+    double speed = transition->direction * s->now.rate[transition->quantity];
+    if (transition->from == s->mode && missing >= 0.0 && speed > 0.0 &&
+        missing <= speed * AT_CORNER * s->now.time) {
+      return i;
+    }
+  }
+  return -1;
+}
+
 /* ---- along the time ----------------------------------------------------------------------- */
 
 /* A speed may be far above its size, when a stiff mode rings, as long as the elongation stays. */
@@ -191,6 +208,7 @@ static enum status advance(struct simulation *s, int root[HLPV_TRANSITIONS_MAX],
 /* From now to `stop`, a corner of the set-point. */
 static enum status run_piece(struct simulation *s, double stop, struct error *error) {
   enum status status = restart(s, stop, error);
+  bool counted = false;
   for (long step = 0; status == STATUS_OK && s->now.time < stop; step++) {
     int root[HLPV_TRANSITIONS_MAX];
     status = advance(s, root, error);
@@ -198,17 +216,24 @@ static enum status run_piece(struct simulation *s, double stop, struct error *er
       status = look_around(s, error);
     }
     int index = status == STATUS_OK ? passed_guard(s, root) : -1;
+    if (status == STATUS_OK && index < 0 && s->now.time >= stop) {
+      index = guard_at_corner(s);
+    }
     if (index >= 0) {
       integrator_count(s->integrator, &s->recorder.out->counts);
+      counted = true;
       /* The root is found to round-off: what the reset keeps of the quantity is its level. */
       s->now.x[s->spec->transition[index].quantity] = s->spec->transition[index].level;
       status = make_switches(s, index, error);
       if (status == STATUS_OK && s->now.time < stop) {
         status = restart(s, stop, error);
+        counted = false;
       }
     }
   }
-  integrator_count(s->integrator, &s->recorder.out->counts);
+  if (!counted) {
+    integrator_count(s->integrator, &s->recorder.out->counts);
+  }
   return status;
 }
 

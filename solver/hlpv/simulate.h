@@ -4,7 +4,7 @@
  * passed where its quantity crosses the level in its direction; of several at the same time, and of
  * those that lie behind the state after a reset, the first in the model's list is made. A reset
  * that lands beyond a guard of its mode, or on it and moving that way, passes it at once. A switch
- * at the time of a corner is made first, with the set-point before it. */
+ * at the time of a corner (but for 1e-11 of it) is made first, with the set-point before it. */
 #ifndef PNEULAB_HLPV_SIMULATE_H
 #define PNEULAB_HLPV_SIMULATE_H
 

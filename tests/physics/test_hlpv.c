@@ -185,7 +185,7 @@ START_TEST(a_ringing_mode_follows_the_matrix_exponential) {
   simulate(&spec, &t);
   follow(spec.hlpv, &t, &f);
   printf("ringing: states %.2g of their size\n", worst(&f.deviation));
-  ck_assert_double_lt(worst(&f.deviation), 2e-8);
+  ck_assert_double_lt(worst(&f.deviation), 1e-8);
   hlpv_trajectory_release(&t);
   job_spec_release(&spec);
 }

@@ -230,6 +230,42 @@ START_TEST(a_reset_beyond_a_guard_passes_it_at_once) {
 }
 END_TEST
 
+/* A guard that is reached at the very time of a step of the set-point: the switch is made first, in
+ * the hold that ends there. The free mass is at h = t at 1 m/s; in the mode that follows the
+ * set-point moves the pressure at once, which shows under which one it began. */
+START_TEST(a_switch_at_a_corner_comes_before_it) {
+  static const char form[] =
+      "{\"kind\": \"hlpv\", \"model\": {\"mass\": \"1 kg\", \"gamma\": \"1 N/kPa\", \"modes\": "
+      "{\"air\": {\"stiffness\": \"0 N/m\", \"damping\": \"0 N s/m\", \"alpha\": \"0 1/s\", "
+      "\"beta\": \"0 1/s\"}, \"other\": {\"stiffness\": \"1 N/m\", \"damping\": \"1 N s/m\", "
+      "\"alpha\": \"-1 1/s\", \"beta\": \"1 1/s\", \"range\": [\"0 kPa\", \"50 kPa\"]}}, "
+      "\"transitions\": [{\"from\": \"air\", \"to\": \"other\", \"when\": {\"h\": \"%d mm\", "
+      "\"direction\": \"rising\"}, \"reset\": {\"velocity\": \"0 m/s\"}}]}, \"initial\": "
+      "{\"mode\": "
+      "\"air\", \"velocity\": \"1 m/s\"}, \"input\": {\"hold\": [[\"0 s\", \"90 kPa\"], [\"%d "
+      "ms\", "
+      "\"40 kPa\"]]}, \"end\": \"1 s\"}";
+  char text[2000];
+  struct job_spec spec;
+  struct hlpv_trajectory t;
+  struct error error = {.status = STATUS_OK};
+  snprintf(text, sizeof text, form, _i, _i);
+  ck_assert_int_eq(job_spec_read(text, strlen(text), &spec, &error), STATUS_OK);
+  ck_assert_int_eq(run(&spec, &t, &error), STATUS_OK);
+  ck_assert_uint_eq(t.event_count, 1);
+  ck_assert_double_eq_tol(t.event[0].time, 1e-3 * _i, 1e-12);
+  ck_assert_double_le(t.event[0].time, spec.hlpv->input.time[1]);
+  ck_assert_int_eq(t.hold[0].switches, 1);
+  ck_assert_int_eq(t.hold[1].switches, 0);
+  ck_assert_int_eq(t.hold[0].mode, 1);
+  /* From then on p = 40 kPa (1 - exp(-t)), and nothing of the 90 kPa before. */
+  double span = 1.0 - 1e-3 * _i;
+  ck_assert_double_eq_tol(t.x[HLPV_PRESSURE], 40e3 * (1.0 - exp(-span)), 1e-4);
+  hlpv_trajectory_release(&t);
+  job_spec_release(&spec);
+}
+END_TEST
+
 /* ---- doubts ------------------------------------------------------------------------------- */
 
 /* What is put in place of a number of the relay, and the warning that it leaves. */
@@ -257,6 +293,52 @@ START_TEST(doubtful_models_leave_warnings) {
   ck_assert_int_eq(run(&spec, &t, &error), STATUS_OK);
   ck_assert_int_eq(t.warning_count, 2);
   ck_assert_msg(is_warned(&t, phrases[_i]), "%s", t.warning[0]);
+  hlpv_trajectory_release(&t);
+  job_spec_release(&spec);
+}
+END_TEST
+
+/* The whole way from the job: 5.577 N/kPa where N/psi is meant makes 308 N. */
+START_TEST(a_mixed_up_unit_of_gamma_is_questioned) {
+  static const char form[] =
+      "{\"kind\": \"hlpv\", \"model\": {\"mass\": \"60 g\", \"gamma\": \"5.577 N/%s\", \"modes\": "
+      "{\"free\": {\"stiffness\": \"2000 N/m\", \"damping\": \"15 N s/m\", \"alpha\": \"-9 1/s\", "
+      "\"beta\": \"9 1/s\"}}}, \"initial\": {\"mode\": \"free\"}, \"input\": {\"hold\": [[\"0 s\", "
+      "\"3 psi\"]]}, \"end\": \"1 s\"}";
+  static const char *const units[] = {"psi", "kPa"};
+  for (int i = 0; i < 2; i++) {
+    char text[1000];
+    struct job_spec spec;
+    struct hlpv_trajectory t;
+    struct error error;
+    snprintf(text, sizeof text, form, units[i]);
+    ck_assert_int_eq(job_spec_read(text, strlen(text), &spec, &error), STATUS_OK);
+    ck_assert_int_eq(run(&spec, &t, &error), STATUS_OK);
+    ck_assert_int_eq(t.warning_count, i);
+    ck_assert_int_eq(is_warned(&t, "307.6 N at 8 psi"), i);
+    hlpv_trajectory_release(&t);
+    job_spec_release(&spec);
+  }
+}
+END_TEST
+
+/* Mode, set-point and time, as often as modes are concerned and not more. */
+START_TEST(a_set_point_out_of_range_is_named) {
+  struct job_spec spec;
+  struct hlpv_trajectory t;
+  struct error error;
+  read_model(relay,
+             "[{\"from\": \"up\", \"to\": \"down\", \"when\": {\"pressure\": \"10 kPa\", "
+             "\"direction\": \"rising\"}}, {\"from\": \"down\", \"to\": \"up\", \"when\": "
+             "{\"pressure\": \"0 kPa\", \"direction\": \"falling\"}}]",
+             "{\"mode\": \"up\"}", "1 s", &spec);
+  spec.hlpv->mode[0].to = 60e3;
+  spec.hlpv->mode[0].alpha.c[0] = spec.hlpv->mode[1].alpha.c[0] = -1e-3;
+  ck_assert_int_eq(run(&spec, &t, &error), STATUS_OK);
+  ck_assert_uint_ge(t.event_count, 4);
+  ck_assert_int_eq(t.warning_count, 1);
+  ck_assert_msg(is_warned(&t, "mode \"up\": the set-point 100 kPa, at 0 s, is outside the range"),
+                "%s", t.warning[0]);
   hlpv_trajectory_release(&t);
   job_spec_release(&spec);
 }
@@ -331,6 +413,9 @@ int main(void) {
                       sizeof throws / sizeof *throws);
   tcase_add_loop_test(tcase, the_first_of_two_guards_is_taken, 0, 2);
   tcase_add_test(tcase, a_reset_beyond_a_guard_passes_it_at_once);
+  tcase_add_loop_test(tcase, a_switch_at_a_corner_comes_before_it, 1, 60);
+  tcase_add_test(tcase, a_mixed_up_unit_of_gamma_is_questioned);
+  tcase_add_test(tcase, a_set_point_out_of_range_is_named);
   tcase_add_loop_test(tcase, doubtful_models_leave_warnings, 0, 4);
   tcase_add_test(tcase, limits_are_respected);
   tcase_add_test(tcase, a_state_without_bound_is_named);

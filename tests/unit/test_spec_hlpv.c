@@ -215,6 +215,10 @@ static const struct {
      "\"input\": {\"hold\": [[\"0 s\", \"1 kPa\"], [\"2 s\", \"1 kPa\"], [\"2 s\", \"3 kPa\"]]}, "
      "\"end\": \"1 s\"",
      "/input/hold/2/0", "must rise"},
+    {NULL, NULL, NULL,
+     "\"input\": {\"linear\": [[\"0 s\", \"1 kPa\"], [\"2 s\", \"1 kPa\"], [\"1 s\", \"3 kPa\"]]}, "
+     "\"end\": \"1 s\"",
+     "/input/linear/2/0", "1 s is not after the one before it, 2 s"},
     {NULL, NULL, NULL, "\"input\": {\"hold\": [[\"0 s\", \"1 mm\"]]}, \"end\": \"1 s\"",
      "/input/hold/0/1", "a pressure"},
     {NULL, NULL, NULL,
