@@ -347,9 +347,9 @@ static enum status check_samples(double samples, struct error *error) {
 enum status study_expand(const struct job_reader *job_reader, const json_t *document, bool keep,
                          struct study *study, struct error *error) {
   const char *kept = json_string_value(json_object_get(document, "keep"));
-  bool light = study_has_light_members(document);
-  *study = (struct study){.light = light};
-  study->keep_samples = kept ? strcmp(kept, "samples") == 0 : !light;
+  const char *usual = strcmp(study_base_kind(document), "response") == 0 ? "samples" : "metrics";
+  *study = (struct study){.light = study_has_light_members(document)};
+  study->keep_samples = strcmp(kept ? kept : usual, "samples") == 0;
   struct reader reader = {job_reader_units(job_reader), error};
   enum status status = study_check_size(document, error);
   if (status == STATUS_OK) {
