@@ -30,7 +30,7 @@ static void add_point(struct identification *id, size_t index, bool bounds, stru
   }
   column[POINT_STIFFNESS] =
       add_slot(layout, &value[IDENTIFY_STIFFNESS], value[IDENTIFY_STIFFNESS], 1.0);
-  if (!estimate->at_bound || !bounds) {
+  if (estimate->damping == DAMPING_FREE || (estimate->damping == DAMPING_BOUND && !bounds)) {
     column[POINT_DAMPING] = add_slot(layout, &value[IDENTIFY_DAMPING],
                                      fmax(value[IDENTIFY_DAMPING], 0.05 * critical), 1.0);
   }
@@ -256,7 +256,9 @@ static void hand_out(struct identification *id, const struct group *group,
     for (int j = 0; j < IDENTIFY_COEFFICIENTS; j++) {
       size_t place = column[j] >= 0 ? (size_t)column[j] : 0;
       estimate->place[j] = place;
-      estimate->stderror[j] = column[j] >= 0 ? sqrt(group->covariance[place * n + place]) : NAN;
+      estimate->stderror[j] = column[j] >= 0          ? sqrt(group->covariance[place * n + place])
+                              : j == IDENTIFY_DAMPING ? INFINITY
+                                                      : NAN;
     }
     for (int j = 0; j < 3; j++) {
       int place = column[POINT_REST + j];

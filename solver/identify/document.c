@@ -51,7 +51,7 @@ static json_t *point_object(const struct identification *id, size_t index) {
   json_t *o = json_pack("{s:f, s:I, s:I}", "set_point_kPa", 1e-3 * point->set_point, "steps",
                         (json_int_t)point->step_count, "samples", (json_int_t)point->samples);
   for (int c = 0; c < IDENTIFY_COEFFICIENTS; c++) {
-    if (!isnan(e->stderror[c])) {
+    if (isfinite(e->stderror[c])) {
       json_object_set_new(o, coefficient_key(id, c),
                           number_object(e->value[c], e->stderror[c], group->freedom, 1.0));
     }

@@ -9,6 +9,7 @@
 
 #include "solver/base/clock.h"
 #include "solver/identify/covariance.h"
+#include "solver/identify/doubt.h"
 #include "solver/identify/start.h"
 
 enum { ROUNDS_MAX = 4, ITERATIONS_MAX = 100 };
@@ -143,21 +144,45 @@ static void set_x(const struct layout *layout, gsl_vector *x) {
   }
 }
 
+/* Sum of the squares of the residuals. */
+static double cost(const gsl_multilarge_nlinear_workspace *work) {
+  double square;
+  const gsl_vector *f = gsl_multilarge_nlinear_residual(work);
+  gsl_blas_ddot(f, f, &square);
+  return square;
+}
+
+/* Whether a step has changed nothing that counts: the parameters by less than a millionth, or the
+ * sum of squares by less than a hundredth of a standard error does. */
+static bool has_settled(const gsl_multilarge_nlinear_workspace *work, double before) {
+  int info;
+  const gsl_vector *x = gsl_multilarge_nlinear_position(work);
+  const gsl_vector *step = gsl_multilarge_nlinear_step(work);
+  double after = cost(work), freedom = (double)(work->n - work->p), largest = 0.0;
+  for (size_t i = 0; i < step->size; i++) {
+    largest = fmax(largest, fabs(gsl_vector_get(step, i)) / (fabs(gsl_vector_get(x, i)) + 0.01));
+  }
+  return gsl_multilarge_nlinear_test(1e-6, 1e-9, 0.0, &info, work) == GSL_SUCCESS ||
+         (largest < 0.01 && before - after < 1e-4 * after / freedom);
+}
+
 static enum status run_solver(struct task *task, gsl_multilarge_nlinear_workspace *work,
-                              gsl_vector *x, double tolerance) {
+                              gsl_vector *x) {
   gsl_multilarge_nlinear_fdf fdf = {.f = residuals,
                                     .df = derivatives,
                                     .n = group_rows(task->id, task->group),
                                     .p = (size_t)task->layout->count,
                                     .params = task};
-  int info = 0, flag = gsl_multilarge_nlinear_init(x, &fdf, work);
-  if (flag == GSL_SUCCESS) {
-    flag = gsl_multilarge_nlinear_driver(ITERATIONS_MAX, tolerance, 1e-3 * tolerance, 0.0, NULL,
-                                         NULL, &info, work);
+  int flag = gsl_multilarge_nlinear_init(x, &fdf, work);
+  task->group->converged = false;
+  for (int i = 0; i < ITERATIONS_MAX && flag == GSL_SUCCESS && !task->group->converged; i++) {
+    double before = cost(work);
+    flag = gsl_multilarge_nlinear_iterate(work);
+    task->group->iterations++;
+    task->group->converged = flag == GSL_SUCCESS && has_settled(work, before);
   }
-  task->group->iterations += (int)gsl_multilarge_nlinear_niter(work);
   /* No progress to the last digit is an end, too. */
-  task->group->converged = flag == GSL_SUCCESS || flag == GSL_ENOPROG;
+  task->group->converged = task->group->converged || flag == GSL_ENOPROG;
   if (task->status == STATUS_OK && !evaluate(task, gsl_multilarge_nlinear_position(work)->data) &&
       task->status == STATUS_OK) {
     task->status = error_set(task->error, STATUS_DIVERGED, NULL,
@@ -166,8 +191,7 @@ static enum status run_solver(struct task *task, gsl_multilarge_nlinear_workspac
   return task->status;
 }
 
-static enum status fit_group(struct identification *id, struct group *group, double tolerance,
-                             struct error *error) {
+enum status estimate_fit(struct identification *id, struct group *group, struct error *error) {
   struct layout layout;
   struct task task = {.id = id, .group = group, .layout = &layout, .error = error};
   gsl_multilarge_nlinear_workspace *work = NULL;
@@ -189,7 +213,7 @@ static enum status fit_group(struct identification *id, struct group *group, dou
   }
   task.x[0] = NAN;
   set_x(&layout, x);
-  status = run_solver(&task, work, x, tolerance);
+  status = run_solver(&task, work, x);
 done:
   gsl_multilarge_nlinear_free(work);
   gsl_vector_free(x);
@@ -273,13 +297,13 @@ static enum status form_groups(struct identification *id, struct error *error) {
   return STATUS_OK;
 }
 
-/* Fits every group, from loose to tight as the noise becomes known. */
+/* Fits every group until its noise stays. */
 static enum status fit_rounds(struct identification *id, struct error *error) {
   enum status status = STATUS_OK;
   double change = INFINITY;
   for (int round = 0; round < ROUNDS_MAX && change > 1.05 && status == STATUS_OK; round++) {
     for (size_t g = 0; g < id->group_count && status == STATUS_OK; g++) {
-      status = fit_group(id, &id->group[g], round == 0 ? 1e-3 : 1e-8, error);
+      status = estimate_fit(id, &id->group[g], error);
     }
     if (status == STATUS_OK) {
       status = update_noise(id, &change, error);
@@ -288,34 +312,22 @@ static enum status fit_rounds(struct identification *id, struct error *error) {
   return status;
 }
 
-/* Points whose damping went to its bound stay there. */
-static bool hold_bounds(struct identification *id) {
-  bool any = false;
-  for (size_t i = 0; i < id->point_count; i++) {
-    double *value = id->estimate[i].value;
-    double critical = 2.0 * sqrt(value[IDENTIFY_STIFFNESS] * id->mass.value);
-    if (!id->estimate[i].at_bound && value[IDENTIFY_DAMPING] < 1e-5 * critical) {
-      value[IDENTIFY_DAMPING] = 0.0;
-      id->estimate[i].at_bound = any = true;
-    }
-  }
-  return any;
-}
-
 enum status estimate_points(struct identification *id, struct error *error) {
-  for (size_t i = 0; i < 2 * id->trials->count; i++) {
-    double given = id->spec->noise[i % 2];
-    id->sigma[i] = given > 0.0 ? given : 0.01 * id->steps->range[i % 2];
+  enum status status = start_noise(id, error);
+  if (status == STATUS_OK) {
+    status = start_values(id, error);
   }
-  enum status status = start_values(id, error);
   if (status == STATUS_OK) {
     status = form_groups(id, error);
   }
   if (status == STATUS_OK) {
     status = fit_rounds(id, error);
   }
-  if (status == STATUS_OK && hold_bounds(id)) {
-    status = fit_rounds(id, error);
+  if (status == STATUS_OK) {
+    status = doubt_swings(id, error);
+  }
+  if (status == STATUS_OK && (id->mass.free || id->gamma.free)) {
+    status = doubt_inertia(id, error);
   }
   for (size_t g = 0; g < id->group_count && status == STATUS_OK; g++) {
     status = covariance_fill(id, &id->group[g], error);

@@ -12,6 +12,10 @@
  * NO_MEMORY. */
 enum status estimate_points(struct identification *id, struct error *error);
 
+/* Least squares of one group from its values as they stand, with the noise as it stands; fills its
+ * iterations and converged, and the residuals of its points. STATUS_OK, or as estimate_points. */
+enum status estimate_fit(struct identification *id, struct group *group, struct error *error);
+
 /* Half width of the 95 % confidence interval of a number with that standard error, by Student's
  * distribution. */
 double estimate_half_width(double stderror, double freedom);

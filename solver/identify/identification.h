@@ -4,14 +4,22 @@
 
 #include "solver/identify/point.h"
 
+/* Change of chi-square from which a swing is in the data: swings of many frequencies are looked
+ * for, and some fit noise by more than the quantiles of one test. */
+#define IDENTIFY_SURE 25.0
+
+/* How the damping of a point came out: estimated; at 0, the least that is allowed; or not to be
+ * seen, and held at a value that the others do not depend on. */
+enum damping { DAMPING_FREE, DAMPING_BOUND, DAMPING_UNSEEN };
+
 /* What a point has come to. Numbers are in SI units and in the order of enum identify_coefficient.
  */
 struct point_estimate {
   double value[IDENTIFY_COEFFICIENTS];
-  double stderror[IDENTIFY_COEFFICIENTS]; /* infinite: not to be seen in the data; NAN: no such
+  double stderror[IDENTIFY_COEFFICIENTS]; /* infinite: not to be seen; NAN: no such
                                            * coefficient (beta at the set-point 0) */
   size_t place[IDENTIFY_COEFFICIENTS];    /* in the covariance of its group */
-  bool at_bound;                          /* the damping is at 0, the least that is allowed */
+  enum damping damping;
   int visible;                            /* numbers in `singular` and directions */
   double singular[IDENTIFY_COEFFICIENTS]; /* of the Jacobian to logarithms, falling */
   double direction[IDENTIFY_COEFFICIENTS][IDENTIFY_COEFFICIENTS];
@@ -45,6 +53,7 @@ struct identification {
   struct point_estimate *estimate;
   struct group *group;
   struct shared_estimate rest[HLPV_MODES_MAX], mass, gamma;
+  bool inertia;      /* whether the data show it, where mass or gamma is to be identified */
   double *sigma;     /* 2 for each trial: h in m, pressure in Pa */
   double deadline_s; /* clock_wall_s at which to stop, 0: none */
   bool (*cancelled)(void *context);

@@ -1,6 +1,7 @@
 #include "solver/identify/jumps.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { LAST_ROWS = 4 };
 
@@ -59,35 +60,55 @@ static void add_level(const struct identification *id, const struct outcome *out
   g->outer = fmin(g->outer, fmax(side * ahead, side * h) + margin);
 }
 
+/* Takes a state and its covariance back by a time, along the tangent: x - time f(x), f being
+ * affine. */
+static void take_back(const struct hlpv_spec *model, double set_point, double time,
+                      const double *covariance, double x[HLPV_STATES], double rate[HLPV_STATES],
+                      double variance[HLPV_STATES]) {
+  double m[HLPV_STATES][HLPV_STATES];
+  hlpv_derivative(model, 0, set_point, x, rate);
+  for (int k = 0; k < HLPV_STATES; k++) {
+    double moved[HLPV_STATES], moved_rate[HLPV_STATES];
+    memcpy(moved, x, sizeof moved);
+    moved[k] += 1.0;
+    hlpv_derivative(model, 0, set_point, moved, moved_rate);
+    for (int i = 0; i < HLPV_STATES; i++) {
+      m[i][k] = (i == k) - time * (moved_rate[i] - rate[i]);
+    }
+  }
+  for (int i = 0; i < HLPV_STATES; i++) {
+    variance[i] = 0.0;
+    for (int k = 0; k < HLPV_STATES; k++) {
+      for (int j = 0; j < HLPV_STATES; j++) {
+        variance[i] += m[i][k] * covariance[k * HLPV_STATES + j] * m[i][j];
+      }
+    }
+    x[i] -= time * rate[i];
+  }
+}
+
 /* The state at the first row after a switch, half an interval earlier. */
 static void add_reset(const struct identification *id, const struct outcome *outcome,
                       const struct trial *trial, size_t index, double interval,
                       struct gathered *g) {
   const struct step *after = &id->steps->step[index];
   const struct point_start *start = &outcome->start[index];
-  struct hlpv_spec spec = {.mass = id->mass.value, .gamma = id->gamma.value, .mode_count = 1};
-  spec.mode[0] = outcome->mode[after->mode];
-  double rate[HLPV_STATES] = {0.0, 0.0, 0.0}, x[HLPV_STATES], variance[HLPV_STATES];
-  for (int k = 0; k < HLPV_STATES; k++) {
-    x[k] = start->x[k];
-    variance[k] = start->covariance[k * HLPV_STATES + k];
-  }
+  const double *sigma = id->sigma + 2 * after->trial;
+  struct hlpv_spec model = {.mass = id->mass.value, .gamma = id->gamma.value, .mode_count = 1};
+  model.mode[0] = outcome->mode[after->mode];
+  double rate[HLPV_STATES] = {0.0, 0.0, 0.0};
+  double x[HLPV_STATES] = {trial->h[after->first], 0.0, trial->pressure[after->first]};
+  double variance[HLPV_STATES] = {sigma[0] * sigma[0], INFINITY, sigma[1] * sigma[1]};
   if (outcome->has_start[index]) {
-    hlpv_derivative(&spec, 0, after->set_point, x, rate);
-  } else {
-    x[HLPV_H] = trial->h[after->first];
-    x[HLPV_VELOCITY] = 0.0;
-    x[HLPV_PRESSURE] = trial->pressure[after->first];
-    variance[HLPV_H] = id->sigma[2 * after->trial] * id->sigma[2 * after->trial];
-    variance[HLPV_VELOCITY] = INFINITY;
-    variance[HLPV_PRESSURE] = id->sigma[2 * after->trial + 1] * id->sigma[2 * after->trial + 1];
+    memcpy(x, start->x, sizeof x);
+    take_back(&model, after->set_point, 0.5 * interval, start->covariance, x, rate, variance);
   }
   for (int k = 0; k < HLPV_STATES; k++) {
-    double value = x[k] - 0.5 * interval * rate[k], way = interval * rate[k];
+    double way = interval * rate[k];
     double weight = 1.0 / (variance[k] + way * way / 12.0 + 1e-30);
     g->weight[k] += weight;
-    g->sum[k] += weight * value;
-    g->square[k] += weight * value * value;
+    g->sum[k] += weight * x[k];
+    g->square[k] += weight * x[k] * x[k];
   }
 }
 

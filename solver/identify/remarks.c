@@ -16,6 +16,11 @@ static bool is_unseen(double value, double stderror) {
   return !(stderror <= unseen * fabs(value));
 }
 
+static bool is_inertia_unseen(const struct identification *id,
+                              const struct shared_estimate *shared) {
+  return !id->inertia || is_unseen(shared->value, shared->stderror);
+}
+
 /* ---- identifiability ---------------------------------------------------------------------- */
 
 static void say(json_t *remarks, json_t *sentence) {
@@ -29,17 +34,17 @@ static void remark_shared(const struct identification *id, json_t *remarks) {
         json_string("neither mass nor gamma is given: only stiffness/mass, damping/mass and "
                     "gamma/mass are visible. Coefficients are per mass, and the model is given for "
                     "a mass of 1 kg, which moves alike"));
-  } else if (!gamma && is_unseen(id->gamma.value, id->gamma.stderror)) {
+  } else if (!gamma && is_inertia_unseen(id, &id->gamma)) {
     say(remarks,
         json_string("gamma cannot be told from the mass: at this sampling the elongation follows "
                     "the pressure without inertia, so that only stiffness/gamma and damping/gamma "
                     "are visible. Give gamma"));
-  } else if (!mass && is_unseen(id->mass.value, id->mass.stderror)) {
+  } else if (!mass && is_inertia_unseen(id, &id->mass)) {
     say(remarks,
         json_string("the mass cannot be told: at this sampling the elongation follows the pressure "
                     "without inertia. Stiffness and damping do not depend on it"));
   }
-  if (!mass && !gamma && is_unseen(id->gamma.value, id->gamma.stderror)) {
+  if (!mass && !gamma && is_inertia_unseen(id, &id->gamma)) {
     say(remarks,
         json_string("not even gamma/mass can be told: at this sampling the elongation follows the "
                     "pressure without inertia, so that only stiffness/gamma and damping/gamma are "

@@ -13,6 +13,8 @@
  *   h' = W v,  v' = -W h - (b/m) v + W p,  p' = alpha p. */
 enum { STATES = 7, PRESSURE = 6, PAIRS = 3 };
 
+static const double swinging = 0.2; /* damping ratio below which Adams-Moulton is faster */
+
 /* Derivatives are to parameters in these units: k, critical damping, |alpha|, m, gamma. */
 struct rates {
   double frequency, damping, critical, alpha;
@@ -21,10 +23,11 @@ struct rates {
 struct response {
   struct rates rates;
   SUNContext context;
-  void *cvode;
+  void *cvode;     /* that of the motion at hand */
+  void *method[2]; /* BDF for what creeps, Adams-Moulton for what swings */
   N_Vector y, *slope;
-  SUNMatrix jacobian;
-  SUNLinearSolver solver;
+  SUNMatrix jacobian[2];
+  SUNLinearSolver solver[2];
   double tolerance;
   int parameters; /* differentiated by */
   long steps;
@@ -99,22 +102,22 @@ static void ignore_message(int code, const char *module, const char *function, c
 /* ---- creation ----------------------------------------------------------------------------- */
 
 /* Sensitivities follow the steps of the states: a least-squares fit needs them less exactly. */
-static bool set_up(struct response *r) {
+static bool set_up(struct response *r, int method) {
   double absolute[RESPONSE_PARAMETERS];
   for (int j = 0; j < r->parameters; j++) {
     absolute[j] = r->tolerance;
   }
-  r->cvode = CVodeCreate(CV_BDF, r->context);
-  return r->cvode && CVodeSetErrHandlerFn(r->cvode, ignore_message, NULL) == CV_SUCCESS &&
-         CVodeInit(r->cvode, derivative, 0.0, r->y) == CV_SUCCESS &&
-         CVodeSetUserData(r->cvode, r) == CV_SUCCESS &&
-         CVodeSStolerances(r->cvode, r->tolerance, r->tolerance) == CV_SUCCESS &&
-         CVodeSetLinearSolver(r->cvode, r->solver, r->jacobian) == CV_SUCCESS &&
-         CVodeSetJacFn(r->cvode, jacobian) == CV_SUCCESS &&
-         CVodeSetMaxNumSteps(r->cvode, 1000000) == CV_SUCCESS &&
-         CVodeSensInit(r->cvode, r->parameters, CV_SIMULTANEOUS, slopes, r->slope) == CV_SUCCESS &&
-         CVodeSensSStolerances(r->cvode, r->tolerance, absolute) == CV_SUCCESS &&
-         CVodeSetSensErrCon(r->cvode, SUNFALSE) == CV_SUCCESS;
+  void *cvode = r->method[method] = CVodeCreate(method == 0 ? CV_BDF : CV_ADAMS, r->context);
+  return cvode && CVodeSetErrHandlerFn(cvode, ignore_message, NULL) == CV_SUCCESS &&
+         CVodeInit(cvode, derivative, 0.0, r->y) == CV_SUCCESS &&
+         CVodeSetUserData(cvode, r) == CV_SUCCESS &&
+         CVodeSStolerances(cvode, r->tolerance, r->tolerance) == CV_SUCCESS &&
+         CVodeSetLinearSolver(cvode, r->solver[method], r->jacobian[method]) == CV_SUCCESS &&
+         CVodeSetJacFn(cvode, jacobian) == CV_SUCCESS &&
+         CVodeSetMaxNumSteps(cvode, 1000000) == CV_SUCCESS &&
+         CVodeSensInit(cvode, r->parameters, CV_SIMULTANEOUS, slopes, r->slope) == CV_SUCCESS &&
+         CVodeSensSStolerances(cvode, r->tolerance, absolute) == CV_SUCCESS &&
+         CVodeSetSensErrCon(cvode, SUNFALSE) == CV_SUCCESS;
 }
 
 enum status response_create(double tolerance, int parameters, struct response **response,
@@ -128,17 +131,21 @@ enum status response_create(double tolerance, int parameters, struct response **
   r->tolerance = tolerance;
   r->parameters = parameters;
   r->y = N_VNew_Serial(STATES, r->context);
-  r->jacobian = SUNDenseMatrix(STATES, STATES, r->context);
-  if (r->y && r->jacobian) {
+  if (r->y) {
     N_VEnableFusedOps_Serial(r->y, SUNTRUE);
     N_VConst(0.0, r->y);
     r->slope = N_VCloneVectorArray(parameters, r->y);
-    r->solver = SUNLinSol_Dense(r->y, r->jacobian, r->context);
   }
   for (int j = 0; r->slope && j < parameters; j++) {
     N_VConst(0.0, r->slope[j]);
   }
-  if (!r->slope || !r->solver || !set_up(r)) {
+  bool good = r->slope != NULL;
+  for (int m = 0; m < 2 && good; m++) {
+    r->jacobian[m] = SUNDenseMatrix(STATES, STATES, r->context);
+    r->solver[m] = r->jacobian[m] ? SUNLinSol_Dense(r->y, r->jacobian[m], r->context) : NULL;
+    good = r->solver[m] && set_up(r, m);
+  }
+  if (!good) {
     response_destroy(r);
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the integrator");
   }
@@ -150,14 +157,16 @@ void response_destroy(struct response *r) {
   if (!r) {
     return;
   }
-  if (r->cvode) {
-    CVodeFree(&r->cvode);
-  }
-  if (r->solver) {
-    SUNLinSolFree(r->solver);
-  }
-  if (r->jacobian) {
-    SUNMatDestroy(r->jacobian);
+  for (int m = 0; m < 2; m++) {
+    if (r->method[m]) {
+      CVodeFree(&r->method[m]);
+    }
+    if (r->solver[m]) {
+      SUNLinSolFree(r->solver[m]);
+    }
+    if (r->jacobian[m]) {
+      SUNMatDestroy(r->jacobian[m]);
+    }
   }
   if (r->slope) {
     N_VDestroyVectorArray(r->slope, r->parameters);
@@ -230,6 +239,7 @@ enum status response_evaluate(struct response *r, const struct response_system *
   double frequency = sqrt(system->stiffness / system->mass), reached = 0.0;
   r->rates =
       (struct rates){frequency, system->damping / system->mass, 2.0 * frequency, system->alpha};
+  r->cvode = r->method[r->rates.damping < swinging * r->rates.critical];
   memset(value, 0, count * value_size * sizeof *value);
   if (slope) {
     memset(slope, 0, count * slope_size * sizeof *slope);

@@ -1,6 +1,7 @@
 /* Motion of one mode under a held set-point from unit initial states, with its derivatives to the
- * coefficients, by SUNDIALS CVODES (BDF with Newton's method; forward sensitivities, simultaneous
- * corrector: Hindmarsh et al., ACM Trans. Math. Softw. 31, 2005).
+ * coefficients, by SUNDIALS CVODES (BDF, or Adams-Moulton for what swings, with Newton's method;
+ * forward sensitivities, simultaneous corrector: Hindmarsh et al., ACM Trans. Math. Softw. 31,
+ * 2005).
  *
  * Between steps of the set-point a mode is linear with constant coefficients, so that every motion
  * in it is its state of rest and a sum of three solutions of

@@ -1,7 +1,51 @@
 #include "solver/identify/start.h"
 
 #include <math.h>
-#include <string.h>
+#include <stdlib.h>
+
+/* ---- noise -------------------------------------------------------------------------------- */
+
+static int compare(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* Standard deviation of a column; difference: room for its second differences. Those of white noise
+ * have a variance of 6, and half of a normal distribution lies within 0.6745 of its deviation. */
+static double column_noise(const double *time, const double *value, size_t count,
+                           double *difference) {
+  size_t n = 0;
+  for (size_t i = 1; i + 1 < count; i++) {
+    double before = time[i] - time[i - 1], after = time[i + 1] - time[i];
+    if (fabs(after - before) < 0.01 * before) {
+      difference[n++] = fabs(value[i + 1] - 2.0 * value[i] + value[i - 1]);
+    }
+  }
+  qsort(difference, n, sizeof *difference, compare);
+  return n > 0 ? difference[n / 2] / (0.6745 * sqrt(6.0)) : 0.0;
+}
+
+enum status start_noise(struct identification *id, struct error *error) {
+  size_t longest = 0;
+  for (size_t i = 0; i < id->trials->count; i++) {
+    longest = id->trials->trial[i].count > longest ? id->trials->trial[i].count : longest;
+  }
+  double *difference = malloc(longest * sizeof *difference);
+  if (!difference) {
+    return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the noise");
+  }
+  for (size_t i = 0; i < id->trials->count; i++) {
+    const struct trial *trial = &id->trials->trial[i];
+    const double *const value[2] = {trial->h, trial->pressure};
+    for (int q = 0; q < 2; q++) {
+      double given = id->spec->noise[q], least = 1e-3 * id->steps->range[q];
+      double found = column_noise(trial->time, value[q], trial->count, difference);
+      id->sigma[2 * i + (size_t)q] = given > 0.0 ? given : fmax(found, least);
+    }
+  }
+  free(difference);
+  return STATUS_OK;
+}
 
 /* ---- the pressure ------------------------------------------------------------------------- */
 
@@ -152,10 +196,16 @@ static void set_motion(struct identification *id, size_t index, double slope, do
   value[IDENTIFY_DAMPING] = 2.0 * ratio * sqrt(k * id->mass.value);
 }
 
+/* Whether a sum of squares is less by more than noise makes it, of all the swings that fit noise.
+ */
+static bool is_better(double sum, double best, const struct point *point) {
+  return sum < best - IDENTIFY_SURE * fmax(1.0, sum / (double)point->rows);
+}
+
 /* The damping ratio of a point under which it fits best, left in its values; the cost in *best. */
 static enum status scan_damping(struct identification *id, size_t index, double slope, double *best,
                                 double *ratio, struct error *error) {
-  static const double ratios[] = {0.05, 0.3, 1.0, 4.0};
+  static const double ratios[] = {0.7, 4.0, 0.1};
   *best = INFINITY;
   for (size_t i = 0; i < sizeof ratios / sizeof *ratios; i++) {
     double sum;
@@ -164,7 +214,7 @@ static enum status scan_damping(struct identification *id, size_t index, double 
     if (status != STATUS_OK) {
       return status;
     }
-    if (sum < *best) {
+    if (is_better(sum, *best, &id->point[index])) {
       *best = sum;
       *ratio = ratios[i];
     }
@@ -200,16 +250,16 @@ static enum status scan_frequency(struct identification *id, const double *slope
     widest = fabs(id->point[i].set_point) > fabs(id->point[widest].set_point) ? i : widest;
   }
   double low = -0.3 * id->estimate[widest].value[IDENTIFY_ALPHA];
-  double high = 6.0 / shortest_interval(&id->point[widest]), least = INFINITY, found = low;
+  double high = 6.0 / shortest_interval(&id->point[widest]), least = INFINITY, found = high;
   high = high > 10.0 * low ? high : 10.0 * low;
   for (int i = 0; i < FREQUENCIES; i++) {
-    double frequency = low * pow(high / low, (double)i / (FREQUENCIES - 1)), best, ratio;
+    double frequency = high * pow(low / high, (double)i / (FREQUENCIES - 1)), best, ratio;
     set_frequency(id, slope[widest], frequency);
     enum status status = scan_damping(id, widest, slope[widest], &best, &ratio, error);
     if (status != STATUS_OK) {
       return status;
     }
-    if (best < least) {
+    if (is_better(best, least, &id->point[widest])) {
       least = best;
       found = frequency;
     }

@@ -240,10 +240,9 @@ struct identify_spec;
 struct snap_spec;
 
 /* Only the members of its kind are filled: of a verify job name, verify, timeout and hash; of a
- * study name, timeout, hash and document; of a fit name, fit, timeout, hash and document, and so of an
- * identification with identify; of a
- * material curve name, material, curve and hash; of an hlpv job name, hlpv, timeout and hash; of a
- * snap job name, snap, timeout and hash. */
+ * study name, timeout, hash and document; of a fit name, fit, timeout, hash and document, and so of
+ * an identification with identify; of a material curve name, material, curve and hash; of an hlpv
+ * job name, hlpv, timeout and hash; of a snap job name, snap, timeout and hash. */
 struct job_spec {
   enum job_kind kind;
   char name[200];

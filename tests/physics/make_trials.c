@@ -1,8 +1,8 @@
 /* make_trials PRESET.json SEED NOISE: a table of step trials of a preset of jobs/beast on standard
  * output, for an identify job. The published protocol, 10 s at 1 to 4 psi compressed and at 1 to 8
- * psi stretched and 10 s back at 0, three of each, after 1 s at 0; then three runs that snap and
+ * psi stretched and 10 s back at 0, three of each, after 0.25 s at 0; then three runs that snap and
  * come back by vacuum. NOISE is the standard deviation of the normal noise of h and pressure, a
- * part of the range of each in its trial. 120 Hz for half a second after a step, 5 Hz then. */
+ * part of the range of each in its trial. 120 Hz before the first step and for half a second after each, 5 Hz then. */
 #include <gsl/gsl_randist.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +15,7 @@
 static char text[1 << 20];
 
 static const struct synthetic_plan plan = {
-    .before = 1.0, .hold = 10.0, .fast = 120.0, .fast_time = 0.5, .slow = 5.0};
+    .before = 0.25, .hold = 10.0, .fast = 120.0, .fast_time = 0.5, .slow = 5.0};
 
 static void print_trial(int number, const struct synthetic_trial *trial, double noise,
                         gsl_rng *generator) {

@@ -95,7 +95,7 @@ void synthetic_make(const struct hlpv_spec *model, const struct synthetic_run *r
   *trial = (struct synthetic_trial){.count = 0};
   struct motion m = {.model = model, .trial = trial, .mode = run->mode, .start = -plan->before};
   m.x[HLPV_H] = model->mode[run->mode].rest;
-  hold(&m, 0.0, -plan->before, 0.0, -plan->before, plan);
+  hold(&m, 0.0, -plan->before, 0.0, 0.0, plan);
   hold(&m, run->up, 0.0, plan->hold, plan->fast_time, plan);
   hold(&m, run->down, plan->hold, 2.0 * plan->hold, plan->hold + plan->fast_time, plan);
 }
