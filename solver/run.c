@@ -1,6 +1,7 @@
 #include "solver/run.h"
 
 #include "solver/base/clock.h"
+#include "solver/bistable/dynamics.h"
 #include "solver/bistable/result.h"
 #include "solver/estimate.h"
 #include "solver/fe/warm.h"
@@ -166,7 +167,12 @@ static enum status run_other(const struct job_spec *spec, const struct run_optio
   }
   if (spec->kind == JOB_SNAP) {
     struct result_snap_options snap = {options->events, options->cancelled};
-    return result_snap(spec, &snap, document, ending, error);
+    enum status status = result_snap(spec, &snap, document, ending, error);
+    if (status == STATUS_OK && spec->bistable) {
+      struct result_bistable_options motion = {options->events, options->cancelled};
+      status = bistable_dynamics(spec, &motion, *document, error);
+    }
+    return status;
   }
   struct verify_options verify = {options->events, options->cancelled};
   return verify_job(spec, &verify, document, ending, error);

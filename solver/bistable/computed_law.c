@@ -1,8 +1,47 @@
 #include "solver/bistable/computed_law.h"
 
-#include <string.h>
+#include <stdlib.h>
 
+#include "solver/bistable/law_path.h"
 #include "solver/snap/result_snap.h"
+
+/* Leaves out the paths that do not lead from one side to the other. */
+static void leave_out(struct law_table *table, json_t *warnings) {
+  int kept = 0;
+  for (int i = 0; i < table->count; i++) {
+    struct law_path path;
+    struct error error;
+    if (law_path_divide(&table->level[i], &path, &error) == STATUS_OK) {
+      table->level[kept++] = table->level[i];
+      continue;
+    }
+    free(table->level[i].h);
+    if (json_is_array(warnings)) {
+      json_array_append_new(
+          warnings, json_sprintf("the law goes without its path at %.6g kPa, which does not lead "
+                                 "from one side to the other",
+                                 1e-3 * table->level[i].pressure));
+    }
+  }
+  table->count = kept;
+}
+
+enum status computed_law_take(json_t *document, struct law_table *table, struct error *error) {
+  const json_t *paths = json_object_get(document, "law");
+  const char *message = json_string_value(json_object_get(document, "message"));
+  enum status status =
+      json_array_size(paths) >= 2 ? law_table_read(paths, "/snap", table, error) : STATUS_OK;
+  if (status != STATUS_OK) {
+    return status;
+  }
+  leave_out(table, json_object_get(document, "warnings"));
+  return table->count >= 2
+             ? STATUS_OK
+             : error_set(error, STATUS_DIVERGED, "/snap",
+                         "the bellows gives no paths at several pressures, so that its motion "
+                         "cannot be computed: %.200s",
+                         message && *message ? message : "it has no law");
+}
 
 enum status computed_law(const struct job_spec *spec, FILE *events,
                          bool (*cancelled)(void *context), json_t **result, struct error *error) {
@@ -24,15 +63,7 @@ enum status computed_law(const struct job_spec *spec, FILE *events,
     if (status != STATUS_OK) {
       return status;
     }
-    const json_t *paths = json_object_get(document, "law");
-    if (json_array_size(paths) < 2) {
-      const char *message = json_string_value(json_object_get(document, "message"));
-      status = error_set(error, ending == STATUS_OK ? STATUS_DIVERGED : ending, "/snap",
-                         "the bellows gives no paths at several pressures: %.250s",
-                         message && *message ? message : "its result has no \"law\"");
-    } else {
-      status = law_table_read(paths, "/snap", &law->table, error);
-    }
+    status = computed_law_take(document, &law->table, error);
     if (status != STATUS_OK) {
       json_decref(document);
       return status;

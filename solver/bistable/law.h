@@ -54,8 +54,9 @@ bool law_has_branches(const struct law *law);
  * its falling stretch, seen from that side. NAN for a law whose force does not fall. */
 double law_end(const struct law *law, enum law_side side, double p);
 
-/* Where the side ceases to be stable under a constant force: the greatest force of the compressed
- * side, the least of the stretched one. NAN for a law whose force does not fall. */
+/* Where the side ceases to be stable under a constant force: the first greatest force of the
+ * compressed side, the first least one of the stretched side, each from outside. NAN for a law
+ * whose force does not fall. */
 double law_limit(const struct law *law, enum law_side side, double p);
 
 /* Elongation on the side at which the pull `force` holds the cell, NAN where there is none. The

@@ -2,6 +2,9 @@
 
 #include <math.h>
 
+/* Part of the range of forces by which a fall is more than a ripple of the computation. */
+#define RIPPLE 2e-3
+
 size_t law_path_index(const struct law_path *path, size_t i) {
   return path->backward ? path->level->count - 1 - i : i;
 }
@@ -94,25 +97,35 @@ static void find_turns(struct law_path *path) {
   }
 }
 
-/* The greatest force of the compressed side and the least of the stretched one. */
-static void find_limits(struct law_path *path) {
-  size_t end = path->level->count - 1, high = 0, low = end;
-  size_t until = path->folds ? path->last : end, from = path->folds ? path->first : 0;
-  if (path->folds) {
-    for (size_t i = 0; i <= until; i++) {
-      high = law_path_force(path, i) > law_path_force(path, high) ? i : high;
-    }
-    for (size_t i = from; i <= end; i++) {
-      low = law_path_force(path, i) < law_path_force(path, low) ? i : low;
-    }
-  } else {
-    while (high < end && law_path_force(path, high + 1) > law_path_force(path, high)) {
-      high++;
-    }
-    while (low > 0 && law_path_force(path, low - 1) < law_path_force(path, low)) {
-      low--;
+/* From the point `from` towards `to`: the extremum of sign * force that is met first, ups and downs
+ * below `small` not counted. */
+static size_t first_extremum(const struct law_path *path, size_t from, size_t to, double sign,
+                             double small) {
+  size_t best = from;
+  for (size_t i = from; i != to;) {
+    i += to > from ? 1 : (size_t)-1;
+    double rise = sign * (law_path_force(path, i) - law_path_force(path, best));
+    if (rise > 0.0) {
+      best = i;
+    } else if (rise < -small) {
+      break;
     }
   }
+  return best;
+}
+
+/* The first greatest force of the compressed side and the first least one of the stretched side. */
+static void find_limits(struct law_path *path) {
+  size_t end = path->level->count - 1;
+  size_t until = path->folds ? path->last : end, from = path->folds ? path->first : 0;
+  double least = INFINITY, most = -INFINITY;
+  for (size_t i = 0; i <= end; i++) {
+    least = fmin(least, law_path_force(path, i));
+    most = fmax(most, law_path_force(path, i));
+  }
+  double small = RIPPLE * (most - least);
+  size_t high = first_extremum(path, 0, until, 1.0, small);
+  size_t low = first_extremum(path, end, from, -1.0, small);
   path->falls = path->folds || high < end;
   path->limit[0] = !path->falls    ? NAN
                    : high == until ? path->turn[0]

@@ -6,8 +6,8 @@
 #include "solver/job/bistable.h"
 
 /* A path with rising h in sum, and its turning points: of h (turn), where h ceases to rise and
- * where it rises again for good, and of the force (limit), its greatest on the compressed side and
- * its least on the stretched one. */
+ * where it rises again for good, and of the force (limit): the first
+ * greatest one from the compressed end on, and the first least one from the stretched end on. */
 struct law_path {
   const struct law_level *level;
   bool backward;            /* its points stand in reverse order */

@@ -299,6 +299,16 @@ static json_t *laws_array(const struct bistable_system *system) {
   return laws;
 }
 
+json_t *bistable_parts(const struct bistable_system *system, const struct bistable_trajectory *t) {
+  json_t *parts = json_object();
+  json_object_set_new(parts, "samples", samples_array(system, t));
+  json_object_set_new(parts, "events", events_array(system, t));
+  json_object_set_new(parts, "plateaus", plateaus_array(system->spec, t));
+  json_object_set_new(parts, "final", final_object(system, t));
+  json_object_set_new(parts, "laws", laws_array(system));
+  return parts;
+}
+
 static json_t *warnings_array(const struct bistable_trajectory *t) {
   json_t *warnings = json_array();
   for (int i = 0; i < t->warning_count; i++) {
@@ -344,15 +354,15 @@ enum status result_bistable(const struct job_spec *spec,
     status = *ending;
     goto done;
   }
-  *document = json_pack(
-      "{s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:[], s:o, s:{s:s, s:s}}",
-      "status", good ? "succeeded" : "diverged", "reason", good ? "" : status_word(*ending),
-      "message", good ? "" : end.message, "kind", "bistable", "name", spec->name, "metrics",
-      bistable_metrics(&system, &t), "samples", samples_array(&system, &t), "events",
-      events_array(&system, &t), "plateaus", plateaus_array(spec->bistable, &t), "final",
-      final_object(&system, &t), "laws", laws_array(&system), "warnings", warnings_array(&t),
-      "artifacts", "statistics", statistics_object(&t, wall_s, cpu_s), "provenance", "version",
-      PNEULAB_VERSION, "spec_hash", spec->hash);
+  *document = json_pack("{s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:[], s:o, s:{s:s, s:s}}", "status",
+                        good ? "succeeded" : "diverged", "reason", good ? "" : status_word(*ending),
+                        "message", good ? "" : end.message, "kind", "bistable", "name", spec->name,
+                        "metrics", bistable_metrics(&system, &t), "warnings", warnings_array(&t),
+                        "artifacts", "statistics", statistics_object(&t, wall_s, cpu_s),
+                        "provenance", "version", PNEULAB_VERSION, "spec_hash", spec->hash);
+  if (*document) {
+    json_object_update_new(*document, bistable_parts(&system, &t));
+  }
   if (!*document) {
     status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the result document");
   }

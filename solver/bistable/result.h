@@ -20,6 +20,9 @@ enum status result_bistable(const struct job_spec *spec,
                             const struct result_bistable_options *options, json_t **document,
                             enum status *ending, struct error *error);
 
+/* Samples, events, plateaus, final state and laws, as members of a new object. */
+json_t *bistable_parts(const struct bistable_system *system, const struct bistable_trajectory *t);
+
 /* The metrics, as a new reference. */
 json_t *bistable_metrics(const struct bistable_system *system, const struct bistable_trajectory *t);
 

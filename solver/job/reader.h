@@ -123,6 +123,11 @@ enum status reader_identify(const struct reader *reader, const json_t *document,
 enum status reader_bistable(const struct reader *reader, const json_t *document,
                             struct job_spec *job);
 
+/* Fills the bistable part of a snap job that asks for "dynamics" (`value`, not NULL); its snap part
+ * has been read. STATUS_OK, INVALID or NO_MEMORY. */
+enum status reader_snap_dynamics(const struct reader *reader, const json_t *value,
+                                 struct job_spec *job);
+
 struct supply_spec;
 
 /* Fills *supply from a value at `pointer`. STATUS_OK or INVALID. */

@@ -249,6 +249,13 @@ static enum status read_study(const struct job_reader *job_reader, const struct 
   return status;
 }
 
+static enum status read_snap(const struct reader *reader, const json_t *document,
+                             struct job_spec *spec) {
+  const json_t *dynamics = json_object_get(document, "dynamics");
+  enum status status = reader_snap(reader, document, spec);
+  return status == STATUS_OK && dynamics ? reader_snap_dynamics(reader, dynamics, spec) : status;
+}
+
 static enum status read_kind(const struct job_reader *job_reader, const struct reader *reader,
                              const json_t *document, struct job_spec *spec) {
   const char *kind = json_string_value(json_object_get(document, "kind"));
@@ -258,7 +265,7 @@ static enum status read_kind(const struct job_reader *job_reader, const struct r
          : strcmp(kind, "material-curve") == 0 ? reader_material_curve(reader, document, spec)
          : strcmp(kind, "hlpv") == 0           ? reader_hlpv(reader, document, spec)
          : strcmp(kind, "identify") == 0       ? reader_identify(reader, document, spec)
-         : strcmp(kind, "snap") == 0           ? reader_snap(reader, document, spec)
+         : strcmp(kind, "snap") == 0           ? read_snap(reader, document, spec)
          : strcmp(kind, "bistable") == 0       ? reader_bistable(reader, document, spec)
                                                : read_response(reader, document, spec);
 }

@@ -259,10 +259,11 @@ struct job_spec {
   struct verify_spec verify;
   struct fit_spec fit;
   struct material_curve_spec curve;
-  struct hlpv_spec *hlpv; /* of an hlpv job, else NULL; owned and borrowed as document */
+  struct hlpv_spec *hlpv;         /* of an hlpv job, else NULL; owned and borrowed as document */
   struct identify_spec *identify; /* likewise of an identify job */
-  struct snap_spec *snap; /* of a snap job, else NULL; likewise */
-  struct bistable_spec *bistable; /* of a bistable job, else NULL; likewise. One whose law comes
+  struct snap_spec *snap;         /* of a snap job, else NULL; likewise */
+  struct bistable_spec *bistable; /* of a bistable job, else NULL; likewise. Also of a snap
+                                   * job with dynamics. One whose law comes
                                    * from a snap job has that in `snap` */
   bool contact;
   struct plane_spec plane[PLANES_MAX];
