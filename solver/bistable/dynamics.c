@@ -1,7 +1,6 @@
 #include "solver/bistable/dynamics.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "solver/base/clock.h"
 #include "solver/bistable/computed_law.h"

@@ -224,6 +224,7 @@ END_TEST
 int main(void) {
   Suite *suite = suite_create("job: schema");
   TCase *tcase = tcase_create("all");
+  tcase_set_timeout(tcase, 60); /* every example with the whole schema around it */
   tcase_add_unchecked_fixture(tcase, set_up, tear_down);
   tcase_add_loop_test(tcase, accepts, 0, sizeof accepted / sizeof *accepted);
   tcase_add_loop_test(tcase, refuses, 0, sizeof refused / sizeof *refused);

@@ -94,6 +94,51 @@ START_TEST(a_law_may_be_computed) {
 }
 END_TEST
 
+/* %s: law, dynamics. */
+static const char snap_form[] =
+    "{\"kind\": \"snap\", \"actuator\": {\"family\": \"frustum-bellows\", \"outer_diameter\": "
+    "\"40 mm\", \"wall\": \"2 mm\", \"snapping_angle\": \"40 deg\", \"supporting_angle\": \"55 "
+    "deg\", \"pet_thickness\": \"0.25 mm\", \"snapping_slant\": \"5 mm\"}, \"silicone\": "
+    "{\"model\": \"neo-hooke\", \"mu\": \"0.19 MPa\"}, \"load\": {\"pressure_to\": \"50 kPa\", "
+    "\"law\": [%s]}, \"dynamics\": {\"pair_mass\": \"12 g\", \"plate_mass\": \"30 g\", "
+    "\"pneumatics\": {\"supply\": \"direct\"} %s}}";
+
+static const struct {
+  const char *law, *dynamics, *pointer; /* NULL: valid */
+} snaps[] = {
+    {"\"0 kPa\", \"20 kPa\"", ", \"pairs\": 3, \"trigger_spread\": 0.1", NULL},
+    {"", "", "/dynamics"},
+    {"\"0 kPa\"", "", "/dynamics"},
+    {"\"0 kPa\", \"20 kPa\"", ", \"pairs\": 24, \"trigger_spread\": 0.2",
+     "/dynamics/trigger_spread"},
+    {"\"0 kPa\", \"20 kPa\"", ", \"rate\": \"0 kPa/s\"", "/dynamics/rate"},
+};
+
+START_TEST(a_snap_job_may_ask_for_its_motion) {
+  struct job_spec spec;
+  struct error error;
+  char text[2000];
+  snprintf(text, sizeof text, snap_form, snaps[_i].law, snaps[_i].dynamics);
+  enum status status = job_spec_read(text, strlen(text), &spec, &error);
+  if (snaps[_i].pointer) {
+    ck_assert_int_eq(status, STATUS_INVALID);
+    ck_assert_str_eq(error.pointer, snaps[_i].pointer);
+    return;
+  }
+  ck_assert_msg(status == STATUS_OK, "%s: %s", error.pointer, error.message);
+  const struct bistable_spec *b = spec.bistable;
+  ck_assert_int_eq(spec.kind, JOB_SNAP);
+  ck_assert_int_eq(b->cell_count, 3);
+  suite_check_near(b->cell[0].stiffness, 0.9);
+  suite_check_near(b->cell[2].stiffness, 1.1);
+  suite_check_near(b->cell[1].damping, 2.0);
+  suite_check_near(b->actuator[0].input.time[1], 5.0);
+  suite_check_near(b->actuator[0].input.value[1], 50e3);
+  suite_check_near(b->end, 6.0);
+  job_spec_release(&spec);
+}
+END_TEST
+
 #define POINT(h, f) "{\"h_mm\": " #h ", \"force_N\": " #f ", \"volume_mm3\": 9000}"
 #define EIGHT                                                                                      \
   POINT(0, 0)                                                                                      \
@@ -210,6 +255,7 @@ int main(void) {
   tcase_add_test(tcase, a_model_arrives_in_si_units);
   tcase_add_test(tcase, a_law_may_be_computed);
   tcase_add_loop_test(tcase, refuses, 0, sizeof refusals / sizeof *refusals);
+  tcase_add_loop_test(tcase, a_snap_job_may_ask_for_its_motion, 0, sizeof snaps / sizeof *snaps);
   tcase_add_test(tcase, no_number_is_refused);
   suite_add_tcase(suite, tcase);
   return suite_run(suite);
