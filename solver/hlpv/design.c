@@ -116,8 +116,8 @@ enum status design_create(const struct hlpv_spec *spec, struct design **design,
   created->model.mass = c->mass;
   created->model.gamma = c->gamma;
   created->regions = c->regions;
+  int valid = 0;
   for (int mode = 0; mode < spec->mode_count; mode++) {
-    int valid = 0;
     for (int i = 0; i < c->regions; i++) {
       struct design_region *region = &created->region[mode][i];
       double part = c->regions > 1 ? (double)i / (c->regions - 1) : 0.5;
@@ -125,14 +125,11 @@ enum status design_create(const struct hlpv_spec *spec, struct design **design,
       region->valid = fill(created, mode, region);
       valid += region->valid;
     }
-    if (valid == 0) {
-      return error_set(error, STATUS_DIVERGED, NULL,
-                       "the mode \"%.40s\" cannot be controlled: at no set-point within the "
-                       "saturation does it have a state of rest with gains that hold it",
-                       spec->mode[mode].name);
-    }
   }
-  return STATUS_OK;
+  return valid > 0 ? STATUS_OK
+                   : error_set(error, STATUS_DIVERGED, NULL,
+                               "nothing can be controlled: at no set-point within the saturation "
+                               "does a mode have a state of rest with gains that hold it");
 }
 
 /* a + part (b - a), number by number. */
@@ -153,7 +150,7 @@ void design_at(const struct design *design, int mode, double set_point,
       above = &list[i];
     }
   }
-  *region = below ? *below : *above;
+  *region = below ? *below : above ? *above : (struct design_region){.valid = false};
   if (below && above) {
     double part = (set_point - below->set_point) / (above->set_point - below->set_point);
     blend(region->gain, above->gain, part, DESIGN_STATES);

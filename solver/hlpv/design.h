@@ -30,13 +30,13 @@ struct design {
  * Regulator: the cost (h / weight_h)^2 + (integral / (weight_h integral_time))^2 + (u /
  * weight_set_point)^2 of deviations. Filter: the set-point disturbed by weight_set_point, and the
  * noise of the job, at least a thousandth of the weights. Both by riccati_solve. *design is owned
- * by the caller, who releases it with free. STATUS_OK, NO_MEMORY, or DIVERGED when a mode has no
+ * by the caller, who releases it with free. STATUS_OK, NO_MEMORY, or DIVERGED when no mode has a
  * valid region. */
 enum status design_create(const struct hlpv_spec *spec, struct design **design,
                           struct error *error);
 
 /* Gains at a set-point: interpolated between the regions of the mode, or those of the nearest
- * valid one. */
+ * valid one; none, all 0, in a mode without. */
 void design_at(const struct design *design, int mode, double set_point,
                struct design_region *region);
 

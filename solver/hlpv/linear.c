@@ -56,7 +56,7 @@ bool linear_rest(const struct hlpv_spec *spec, int mode, double set_point, doubl
   double k = hlpv_polynomial_value(&m->stiffness, set_point);
   double b = hlpv_polynomial_value(&m->damping, set_point);
   double alpha = hlpv_polynomial_value(&m->alpha, set_point);
-  if (!(k > 0.0 && b > 0.0 && alpha < 0.0)) {
+  if (!(k > 0.0 && b >= 0.0 && alpha < 0.0)) {
     return false;
   }
   x[HLPV_PRESSURE] = -hlpv_polynomial_value(&m->beta, set_point) * set_point / alpha;

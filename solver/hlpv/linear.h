@@ -14,7 +14,7 @@ void linear_step(const struct hlpv_spec *spec, int mode, double set_point, doubl
 void linear_apply(double step[HLPV_STATES][HLPV_STATES + 1], const double x[HLPV_STATES],
                   double after[HLPV_STATES]);
 
-/* The state at rest; false where the mode has none or does not return to it. */
+/* The state at rest; false where the mode has none, or runs away from it. */
 bool linear_rest(const struct hlpv_spec *spec, int mode, double set_point, double x[HLPV_STATES]);
 
 /* Sampled motion near the state of rest at the set-point: deviations go over by a (states x

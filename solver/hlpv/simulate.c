@@ -340,7 +340,7 @@ static enum status open_control(struct simulation *s, struct error *error) {
   struct hlpv_trajectory *out = s->recorder.out;
   enum status status = controller_create(s->spec, &s->controller, error);
   out->tracking = calloc(1, sizeof *out->tracking);
-  out->design = malloc(sizeof *out->design);
+  out->design = calloc(1, sizeof *out->design);
   if (status == STATUS_OK && (!out->tracking || !out->design)) {
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the control");
   }

@@ -72,23 +72,38 @@ static bool find_in(const struct target_map *map, int mode, double h, double *di
   return isfinite(*distance);
 }
 
-bool target_find(const struct target_map *map, int mode, double h, struct target *target) {
-  double least, distance;
-  bool found = find_in(map, mode, h, &least, target);
-  target->through = -1;
-  for (int i = 0; i < map->spec->transition_count; i++) {
-    const struct hlpv_transition *t = &map->spec->transition[i];
-    struct target other;
-    if (t->from != mode || t->to == mode || (found && target->reached) ||
-        !find_in(map, t->to, h, &distance, &other)) {
-      continue;
-    }
-    if (!found || distance < least) {
-      *target = other;
-      target->through = i;
-      least = distance;
-      found = true;
+/* Modes in the order of the switches that lead there, and the first of these. */
+struct ways {
+  int mode[HLPV_MODES_MAX], through[HLPV_MODES_MAX], count;
+};
+
+static void find_ways(const struct hlpv_spec *spec, int mode, struct ways *ways) {
+  bool seen[HLPV_MODES_MAX] = {false};
+  *ways = (struct ways){.mode = {mode}, .through = {-1}, .count = 1};
+  seen[mode] = true;
+  for (int i = 0; i < ways->count; i++) {
+    for (int k = 0; k < spec->transition_count; k++) {
+      const struct hlpv_transition *t = &spec->transition[k];
+      if (t->from == ways->mode[i] && !seen[t->to]) {
+        seen[t->to] = true;
+        ways->mode[ways->count] = t->to;
+        ways->through[ways->count++] = i == 0 ? k : ways->through[i];
+      }
     }
   }
-  return found;
+}
+
+bool target_find(const struct target_map *map, int mode, double h, struct target *target) {
+  double least = INFINITY, distance;
+  struct ways ways;
+  find_ways(map->spec, mode, &ways);
+  for (int i = 0; i < ways.count && least > 0.0; i++) {
+    struct target other;
+    if (find_in(map, ways.mode[i], h, &distance, &other) && distance < least) {
+      *target = other;
+      target->through = ways.through[i];
+      least = distance;
+    }
+  }
+  return isfinite(least);
 }

@@ -19,15 +19,15 @@ struct target {
   int mode;
   double h, set_point; /* of the state of rest */
   bool reached;        /* h is what is wanted, not only the nearest to it */
-  int through;         /* transition from the present mode to that one, or -1 when it is the same */
+  int through;         /* first transition on the way to that mode, or -1 in the present one */
 };
 
 /* Fills the map; `spec` must outlive it. */
 void target_map_fill(struct target_map *map, const struct hlpv_spec *spec, double lowest,
                      double highest, double margin);
 
-/* Looks for a state of rest at h: in the present mode, else in those that one transition leads to;
- * else the nearest of all these. False when none of them has any state of rest. */
+/* Looks for a state of rest at h: in the present mode, else in those that the fewest switches lead
+ * to; else the nearest of all. False when no mode on the way has any state of rest. */
 bool target_find(const struct target_map *map, int mode, double h, struct target *target);
 
 #endif

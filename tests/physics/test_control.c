@@ -392,6 +392,61 @@ START_TEST(a_limit_cycle_is_named) {
 }
 END_TEST
 
+/* Between both modes one that only pushes on: nothing rests there, and it is driven through. */
+static const char three_modes[] =
+    "{\"kind\": \"hlpv\", \"model\": {\"mass\": \"60 g\", \"gamma\": \"0.8 N/kPa\", \"modes\": {"
+    "\"low\": {\"stiffness\": \"2000 N/m\", \"damping\": \"20 N s/m\", \"alpha\": \"-9 1/s\", "
+    "\"beta\": \"9 1/s\"}, \"between\": {\"rest\": \"16 mm\", \"stiffness\": \"-500 N/m\", "
+    "\"damping\": \"20 N s/m\", \"alpha\": \"-9 1/s\", \"beta\": \"9 1/s\"}, \"high\": {\"rest\": "
+    "\"20 mm\", \"stiffness\": \"2000 N/m\", \"damping\": \"0 N s/m\", \"alpha\": \"-9 1/s\", "
+    "\"beta\": \"9 1/s\"}}, \"transitions\": ["
+    "{\"from\": \"low\", \"to\": \"between\", \"when\": {\"h\": \"14 mm\", \"direction\": "
+    "\"rising\"}}, {\"from\": \"between\", \"to\": \"high\", \"when\": {\"h\": \"24 mm\", "
+    "\"direction\": \"rising\"}}, {\"from\": \"high\", \"to\": \"between\", \"when\": {\"h\": "
+    "\"22 mm\", \"direction\": \"falling\"}}, {\"from\": \"between\", \"to\": \"low\", \"when\": "
+    "{\"h\": \"12 mm\", \"direction\": \"falling\"}}]}, \"initial\": {\"mode\": \"low\"}, %s}";
+
+/* Also, the upper mode has no damping of its own: the feedback brings it to rest. */
+START_TEST(a_mode_without_rest_is_driven_through) {
+  struct run run;
+  run_open(
+      &run, three_modes,
+      "\"control\": {\"reference\": {\"hold\": [[\"0 s\", \"5 mm\"], [\"1 s\", \"30 mm\"], "
+      "[\"3 s\", \"4 mm\"]]}, \"saturation\": [\"-60 kPa\", \"60 kPa\"], \"rate\": \"200 Hz\"}, "
+      "\"end\": \"5 s\"");
+  for (size_t i = 0; i < run.t.tracking->count; i++) {
+    const struct tracking_step *step = &run.t.tracking->step[i];
+    ck_assert(step->reached);
+    /* Two at least; a rush through the guard may take it back once. */
+    ck_assert(i == 0 ? step->switches == 0 : step->switches == 2 || step->switches == 4);
+    ck_assert_int_eq(step->mode, i == 1 ? 2 : 0);
+    ck_assert(!tracking_cycles(step));
+    ck_assert_double_lt(fabs(tracking_steady_error(step)), 1e-6);
+    ck_assert_double_lt(tracking_settling(step), 1.0);
+  }
+  run_close(&run);
+}
+END_TEST
+
+START_TEST(what_cannot_be_controlled_is_named) {
+  char text[4000];
+  struct job_spec spec;
+  struct hlpv_trajectory t;
+  struct hlpv_options options = {0};
+  struct error error;
+  snprintf(text, sizeof text, free_mode,
+           "\"control\": {\"reference\": {\"hold\": [[\"0 s\", \"5 mm\"]]}, \"saturation\": [\"-5 "
+           "psi\", \"8 psi\"]}, \"end\": \"1 s\"");
+  ck_assert_int_eq(job_spec_read(text, strlen(text), &spec, &error), STATUS_OK);
+  spec.hlpv->mode[0].stiffness.c[0] = -1.0;
+  ck_assert_int_eq(hlpv_simulate(spec.hlpv, &options, &t, &error), STATUS_DIVERGED);
+  ck_assert_msg(strstr(error.message, "nothing can be controlled") != NULL, "%s", error.message);
+  ck_assert_uint_eq(t.sample_count, 0);
+  hlpv_trajectory_release(&t);
+  job_spec_release(&spec);
+}
+END_TEST
+
 START_TEST(ramps_and_sinusoids_are_followed) {
   static const char *const references[] = {
       "{\"linear\": [[\"0 s\", \"0 mm\"], [\"8 s\", \"10 mm\"]]}",
@@ -500,6 +555,8 @@ int main(void) {
   tcase_add_test(tcase, steps_come_to_rest);
   tcase_add_test(tcase, a_gap_between_modes_is_named);
   tcase_add_test(tcase, a_limit_cycle_is_named);
+  tcase_add_test(tcase, a_mode_without_rest_is_driven_through);
+  tcase_add_test(tcase, what_cannot_be_controlled_is_named);
   tcase_add_loop_test(tcase, ramps_and_sinusoids_are_followed, 0, 2);
   tcase_add_test(tcase, noise_is_seeded_and_filtered);
   tcase_add_loop_test(tcase, refuses, 0, sizeof bad / sizeof *bad);
