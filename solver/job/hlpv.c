@@ -11,8 +11,16 @@ void hlpv_input_release(struct hlpv_input *input) {
   *input = (struct hlpv_input){0};
 }
 
+void hlpv_control_destroy(struct hlpv_control *control) {
+  if (control) {
+    hlpv_input_release(&control->reference);
+    free(control);
+  }
+}
+
 void hlpv_spec_destroy(struct hlpv_spec *spec) {
   if (spec) {
+    hlpv_control_destroy(spec->control);
     hlpv_input_release(&spec->input);
     free(spec);
   }
