@@ -90,6 +90,19 @@ static double cosine(const struct follower *f, const struct path_state *a,
   return continuation_product(f->work.system, a->t, b->t) + scale * scale * a->rate * b->rate;
 }
 
+/* Whether the candidate is further from the tangent than twice what an arc would be that turns by
+ * the largest angle: then it is on another branch. */
+static bool strayed(const struct follower *f, double step) {
+  const struct continuation_system *s = f->work.system;
+  double scale = f->work.options->lambda_scale;
+  double aside = scale * (f->next.lambda - f->now.lambda - step * f->now.rate), sum = aside * aside;
+  for (int i = 0; i < s->size; i++) {
+    double d = f->next.x[i] - f->now.x[i] - step * f->now.t[i];
+    sum += s->weight[i] * d * d;
+  }
+  return sqrt(sum) > 2 * tan(0.5 * f->work.options->angle_max) * fabs(step);
+}
+
 /* From now by `step` along the tangent to f->next. */
 static enum status advance(struct follower *f, double step, double *turned, struct error *error) {
   int size = f->work.system->size;
@@ -100,7 +113,7 @@ static enum status advance(struct follower *f, double step, double *turned, stru
   f->next.arc = f->now.arc + step;
   enum status status = path_correct(&f->work, &f->now, step, &f->next, error);
   *turned = status == STATUS_OK ? acos(fmin(1, cosine(f, &f->now, &f->next))) : 0;
-  if (status == STATUS_OK && *turned > f->work.options->angle_max) {
+  if (status == STATUS_OK && (*turned > f->work.options->angle_max || strayed(f, step))) {
     status = error_set(error, STATUS_DIVERGED, NULL, "the path turns too sharply");
   }
   return status;

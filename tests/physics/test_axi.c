@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "solver/axi/skin.h"
 #include "solver/verify/revolution.h"
 #include "tests/unit/suite.h"
 
@@ -290,6 +291,47 @@ START_TEST(wide_washer) {
 }
 END_TEST
 
+/* ---- skin -------------------------------------------------------------------------------- */
+
+/* An edge of length 0.1 on a ring of radius 3, bent to an arc that turns by `angle` and turned
+ * about as a whole: the bending energy is that of a plate, w B/(2 L) angle^2. */
+START_TEST(skin_bends_like_a_plate) {
+  struct error error = {.status = STATUS_OK};
+  struct axi_mesh mesh;
+  struct axi_skin skin;
+  const double length = 0.1, angle = 0.05, thickness = 0.02;
+  ok(axi_mesh_create(9, 1, 1, 0, &mesh, &error), &error);
+  mesh.region[0] = elastic(3, 0.5 - 1e-9); /* mu = 1 */
+  for (int a = 0; a < AXI_NODES; a++) {
+    mesh.element[0].node[a] = a;
+    mesh.position[2 * a] = 3;
+  }
+  mesh.inner[0] = (struct axi_edge){{3, 0, 7}};
+  mesh.position[2 * 3 + 1] = length;
+  mesh.position[2 * 7 + 1] = 0.5 * length;
+  ok(axi_skin_create(&mesh, thickness, &skin, &error), &error);
+  ck_assert_int_eq(skin.count, 1);
+  double x[SKIN_NODES][2] = {{0}}, force[SKIN_DOFS], energy = 0, radius = length / angle;
+  for (int k = 0; k < 3; k++) { /* start, end, middle, turned by 1.1 */
+    double phi = 1.1 + (k == 0 ? 0 : k == 1 ? angle : 0.5 * angle);
+    x[k][0] = 3 + radius * sin(phi);
+    x[k][1] = -radius * cos(phi);
+  }
+  ck_assert(axi_skin_evaluate(skin.turning, x, &energy, force, NULL));
+  double bending = pow(thickness, 3) / 3;
+  double wanted = 2 * M_PI * 3 * bending / (2 * length) * angle * angle;
+  ck_assert_msg(fabs(energy / wanted - 1) < 2e-3, "energy %g of %g", energy, wanted);
+  for (int i = 0; i < 2; i++) { /* the forces balance */
+    ck_assert_double_lt(fabs(force[i] + force[2 + i] + force[4 + i]), 1e-12 * energy / length);
+  }
+  memcpy(x[2], (double[2]){x[0][0] + 3 * length, x[0][1]}, sizeof x[2]);
+  memcpy(x[1], x[0], sizeof x[1]);
+  ck_assert(!axi_skin_evaluate(skin.turning, x, &energy, force, NULL)); /* folded back */
+  axi_skin_release(&skin);
+  axi_mesh_release(&mesh);
+}
+END_TEST
+
 static Suite *axi_suite(void) {
   Suite *suite = suite_create("axi");
   TCase *derivatives = tcase_create("derivatives");
@@ -301,6 +343,7 @@ static Suite *axi_suite(void) {
   tcase_add_loop_test(solutions, stretched_bars_stay_homogeneous, 0,
                       2 * sizeof stretches / sizeof *stretches);
   tcase_add_test(solutions, wide_washer);
+  tcase_add_test(solutions, skin_bends_like_a_plate);
   suite_add_tcase(suite, solutions);
   return suite;
 }

@@ -236,11 +236,12 @@ static void two_rings(const struct material_spec *material, struct axi_mesh *mes
 }
 
 /* z of a surface at r: the place of its edges, found by halving; NaN beside it. */
-static double surface_at(const struct axi_mesh *mesh, const double *u, int from, int to, double r) {
+static double surface_at(const struct axi_mesh *mesh, const struct axi_edge *edge, const double *u,
+                         int from, int to, double r) {
   for (int k = from; k < to; k++) {
     double y[AXI_EDGE_NODES][2];
     for (int i = 0; i < AXI_EDGE_DOFS; i++) {
-      int at = 2 * mesh->outer[k].node[i / 2] + i % 2;
+      int at = 2 * edge[k].node[i / 2] + i % 2;
       y[i / 2][i % 2] = mesh->position[at] + u[at];
     }
     double low = y[0][0] < y[1][0] ? -1 : 1;
@@ -338,12 +339,65 @@ START_TEST(rings_pressed_together_as_hertz_says) {
   double least = INFINITY;
   for (int k = 0; k <= 400; k++) {
     double r = ring + (k - 200) * 0.004;
-    double below = surface_at(&mesh, state.u, 0, LOWER_CELLS, r);
-    double above = surface_at(&mesh, state.u, LOWER_CELLS, LOWER_CELLS + UPPER_CELLS, r);
+    double below = surface_at(&mesh, mesh.outer, state.u, 0, LOWER_CELLS, r);
+    double above =
+        surface_at(&mesh, mesh.outer, state.u, LOWER_CELLS, LOWER_CELLS + UPPER_CELLS, r);
     least = fmin(least, above - below);
   }
   ck_assert_msg(least > -0.001 * height, "overlap %g", -least);
   axi_contact_destroy(contact);
+  axi_state_destroy(&state);
+  axi_model_destroy(model);
+  axi_mesh_release(&mesh);
+}
+END_TEST
+
+/* ---- a channel pressed flat -------------------------------------------------------------- */
+
+enum { ALONG = 40, LOWER_ARM = 10 };
+
+/* The arms of the channel between two plates, closed by more than the channel is wide. They press
+ * on each other over their length, and stay apart. */
+START_TEST(arms_do_not_pass_through_each_other) {
+  static const double closings[] = {-0.2, -0.31, -0.36, -0.4};
+  struct error error = {.status = STATUS_OK};
+  struct axi_mesh mesh;
+  struct axi_model *model = NULL;
+  struct axi_state state;
+  struct revolution body = {
+      .cells = {3, ALONG},
+      .map = channel_map,
+      .material = {.model = MATERIAL_NEO_HOOKE, .terms = 1, .c = {1}, .bulk_ratio = 50}};
+  ok(revolution_mesh(&body, &mesh, &error), &error);
+  for (int j = 0; j <= 2 * LOWER_ARM; j++) {
+    mesh.hold[2 * revolution_node(&body, 6, j) + 1] = AXI_FIXED;
+    mesh.hold[2 * revolution_node(&body, 6, 2 * ALONG - j) + 1] = AXI_PLATE;
+  }
+  ok(axi_model_create(&mesh, &(struct axi_model_options){.contact = true}, &model,
+                      &error),
+     &error);
+  ok(axi_state_create(model, &state, &error), &error);
+  struct continuation_options options = axi_defaults(model);
+  options.iterations_max = 40;
+  double force = 0;
+  for (int k = 0; k < 4; k++) {
+    ok(axi_equilibrium(model, &(struct axi_load){.elongation = closings[k]}, true, &options, &state,
+                       NULL, &error),
+       &error);
+    ck_assert_double_lt(state.force, force);
+    ck_assert_int_eq(state.touching, k > 0);
+    ck_assert_double_lt(fabs(reaction(&mesh, state.u) / -state.force - 1), 1e-5);
+    force = state.force;
+    double least = INFINITY;
+    for (int i = 0; i <= 200; i++) {
+      double r = axis_to_arms + 0.005 * i;
+      double below = surface_at(&mesh, mesh.inner, state.u, 0, LOWER_ARM, r);
+      double above = surface_at(&mesh, mesh.inner, state.u, ALONG - LOWER_ARM, ALONG, r);
+      least = fmin(least, above - below); /* fmin passes over a NaN */
+    }
+    ck_assert(isfinite(least));
+    ck_assert_msg(least > -0.01 * wall, "overlap %g of a wall of %g", -least, wall);
+  }
   axi_state_destroy(&state);
   axi_model_destroy(model);
   axi_mesh_release(&mesh);
@@ -356,6 +410,7 @@ static Suite *contact_suite(void) {
   tcase_add_loop_test(derivatives, forces_are_the_gradient_and_tangent_its_derivative, 0,
                       sizeof squeezes / sizeof *squeezes);
   tcase_add_test(rings, rings_pressed_together_as_hertz_says);
+  tcase_add_test(rings, arms_do_not_pass_through_each_other);
   tcase_set_timeout(rings, 120);
   suite_add_tcase(suite, derivatives);
   suite_add_tcase(suite, rings);
