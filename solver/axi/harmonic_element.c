@@ -25,22 +25,20 @@ static void gradient(const struct axi_point *p, int n, double g[9][HARMONIC_ELEM
   }
 }
 
-/* Adds w g^T A g; A couples the cosines among themselves and the sines among themselves. */
+/* Adds w g^T A g to the upper triangle. Few rows of g belong to a component. */
 static void add_tangent(const double tangent[81], double g[9][HARMONIC_ELEMENT], double weight,
                         double *form) {
   for (int i = 0; i < HARMONIC_ELEMENT; i++) {
-    double row[9];
-    for (int q = 0; q < 9; q++) {
-      row[q] = 0;
-      for (int p = 0; p < 9; p++) {
-        row[q] += weight * g[p][i] * tangent[9 * p + q];
+    double row[9] = {0};
+    for (int p = 0; p < 9; p++) {
+      double factor = weight * g[p][i];
+      for (int q = 0; q < 9 && factor != 0; q++) {
+        row[q] += factor * tangent[9 * p + q];
       }
     }
     for (int q = 0; q < 9; q++) {
-      if (row[q] != 0) {
-        for (int j = 0; j < HARMONIC_ELEMENT; j++) {
-          form[HARMONIC_ELEMENT * i + j] += row[q] * g[q][j];
-        }
+      for (int j = i; j < HARMONIC_ELEMENT && row[q] != 0; j++) {
+        form[HARMONIC_ELEMENT * i + j] += row[q] * g[q][j];
       }
     }
   }
@@ -60,7 +58,8 @@ static void add_volumetric(const struct kinematics *k, double pressure, double l
   }
 }
 
-/* Adds the volumetric part: kappa times the square of the projection of the change of J. */
+/* Adds the volumetric part to the upper triangle: kappa times the square of the projection of the
+ * change of J. */
 static void add_projection(const struct axi_geometry *geometry, double weight,
                            double dilatation[LINEAR][HARMONIC_ELEMENT], double *form) {
   for (int i = 0; i < HARMONIC_ELEMENT; i++) {
@@ -70,7 +69,7 @@ static void add_projection(const struct axi_geometry *geometry, double weight,
         parameter[a] += weight * geometry->inverse[LINEAR * a + b] * dilatation[b][i];
       }
     }
-    for (int j = 0; j < HARMONIC_ELEMENT; j++) {
+    for (int j = i; j < HARMONIC_ELEMENT; j++) {
       for (int a = 0; a < LINEAR; a++) {
         form[HARMONIC_ELEMENT * i + j] += parameter[a] * dilatation[a][j];
       }
@@ -116,6 +115,11 @@ bool harmonic_element(const struct axi_mesh *mesh, const struct axi_geometry *ge
     }
   }
   add_projection(geometry, around * bulk.projected, dilatation, form);
+  for (int i = 0; i < HARMONIC_ELEMENT; i++) {
+    for (int j = 0; j < i; j++) {
+      form[HARMONIC_ELEMENT * i + j] = form[HARMONIC_ELEMENT * j + i];
+    }
+  }
   return true;
 }
 

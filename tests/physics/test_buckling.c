@@ -218,6 +218,7 @@ int main(void) {
   tcase_add_test(buckling, mode_of_a_ring);
   tcase_add_loop_test(buckling, cylinder_under_pressure, 0, 4);
   tcase_add_loop_test(buckling, cylinder_under_axial_force, 0, 3);
+  tcase_set_timeout(buckling, 60);
   suite_add_tcase(suite, buckling);
   return suite_run(suite);
 }

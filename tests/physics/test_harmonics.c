@@ -318,6 +318,7 @@ int main(void) {
   tcase_add_loop_test(variation, rigid_motion, 0, 3);
   tcase_add_test(variation, turned_in_equilibrium);
   tcase_add_test(variation, folds_that_touch);
+  tcase_set_timeout(variation, 60);
   suite_add_tcase(suite, variation);
   return suite_run(suite);
 }
