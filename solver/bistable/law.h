@@ -9,7 +9,8 @@
  * the cell is then one of two branches, compressed or stretched, each with a force that is a
  * function of h up to its turning point. Beyond it the inside of the cell jumps to the other branch
  * at the same h: the air and the masses outside do not move in that moment, and the difference of
- * the potentials is lost to vibrations within the cell.
+ * the potentials is lost to vibrations within the cell. Smaller folds than that between the
+ * branches are stepped over.
  *
  * Of a table the forces along h, and the volumes at the far end of each branch, are taken, and all
  * other volumes follow from the potential: those of the table, and its energies, remain as a check.

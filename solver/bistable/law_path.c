@@ -4,6 +4,8 @@
 
 /* Part of the range of forces by which a fall is more than a ripple of the computation. */
 #define RIPPLE 2e-3
+/* Part of the range of h by which a return is a fold. */
+#define FOLD 1e-3
 
 size_t law_path_index(const struct law_path *path, size_t i) {
   return path->backward ? path->level->count - 1 - i : i;
@@ -60,9 +62,9 @@ static void meet(struct law_path *path) {
   double steepest = INFINITY;
   size_t count = path->level->count, at = count / 2;
   for (size_t i = 1; i + 2 < count; i++) {
-    double slope = (law_path_force(path, i + 1) - law_path_force(path, i)) /
-                   (law_path_h(path, i + 1) - law_path_h(path, i));
-    if (slope < steepest) {
+    double rise = law_path_h(path, i + 1) - law_path_h(path, i);
+    double slope = (law_path_force(path, i + 1) - law_path_force(path, i)) / rise;
+    if (rise > 0.0 && slope < steepest) {
       steepest = slope;
       at = i;
     }
@@ -75,25 +77,30 @@ static void meet(struct law_path *path) {
   }
 }
 
+/* The two points between which h falls furthest along the path: the fold between the sides. Smaller
+ * folds, as of walls that touch, belong to the sides. */
 static void find_turns(struct law_path *path) {
-  size_t end = path->level->count - 1;
-  size_t last = 0, first = end;
-  while (last < end && law_path_h(path, last + 1) > law_path_h(path, last)) {
-    last++;
+  size_t end = path->level->count - 1, top = 0;
+  double least = law_path_h(path, 0), most = least, furthest = 0.0;
+  for (size_t i = 1; i <= end; i++) {
+    double h = law_path_h(path, i);
+    least = fmin(least, h);
+    most = fmax(most, h);
+    if (h > law_path_h(path, top)) {
+      top = i;
+    }
+    if (law_path_h(path, top) - h > furthest) {
+      furthest = law_path_h(path, top) - h;
+      path->last = top;
+      path->first = i;
+    }
   }
-  while (first > 0 && law_path_h(path, first - 1) < law_path_h(path, first)) {
-    first--;
-  }
-  path->folds = last < end;
+  path->folds = furthest > FOLD * (most - least);
   if (!path->folds) {
     meet(path);
-    return;
-  }
-  path->last = last;
-  path->first = first;
-  if (last > 0 && first < end) {
-    turn_at(path, last, &path->turn[0], &path->force[0]);
-    turn_at(path, first, &path->turn[1], &path->force[1]);
+  } else if (path->last > 0 && path->first < end) {
+    turn_at(path, path->last, &path->turn[0], &path->force[0]);
+    turn_at(path, path->first, &path->turn[1], &path->force[1]);
   }
 }
 

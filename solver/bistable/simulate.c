@@ -14,6 +14,9 @@
 /* Speed after an impact below which plate and load stay together, m/s. */
 #define CONTACT_SPEED 1e-6
 
+/* Part of the range of volumes by which a table may contradict itself without a warning. */
+#define CONSISTENT 0.02
+
 enum { STEPS_BETWEEN_LOOKS = 256 };
 
 /* When a cell left the stable part of its side. */
@@ -372,6 +375,21 @@ static void find_sizes(struct simulation *s) {
   s->size[system->impulse] = 0.1;
 }
 
+/* Warns of tables whose volumes are not those of their forces. */
+static void check_laws(struct simulation *s) {
+  const struct bistable_spec *spec = s->system->spec;
+  for (int i = 0; i < spec->law_count; i++) {
+    double difference = spec->law[i].is_table ? law_check(s->system->law[i]).volume : 0.0;
+    if (difference > CONSISTENT) {
+      bistable_warn(s->recorder.out,
+                    "the volumes in the table of the law \"%.40s\" differ by %.2g of their range "
+                    "from those that its forces imply (dF/dp = -dV/dh): more pressures, or more "
+                    "accurate paths, are wanted",
+                    spec->law[i].name, difference);
+    }
+  }
+}
+
 enum status bistable_simulate(struct bistable_system *system,
                               const struct bistable_options *options,
                               struct bistable_trajectory *trajectory, struct error *error) {
@@ -379,6 +397,7 @@ enum status bistable_simulate(struct bistable_system *system,
   s.recorder = (struct bistable_recorder){.system = system, .out = trajectory};
   *trajectory = (struct bistable_trajectory){0};
   find_sizes(&s);
+  check_laws(&s);
   enum status status = stepper_create(system, s.size, &s.stepper, error);
   if (status == STATUS_OK) {
     status = run_all(&s, error);

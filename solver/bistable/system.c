@@ -3,7 +3,10 @@
 #include <math.h>
 #include <string.h>
 
-enum { PRESSURE_STEPS = 80 };
+/* Part of the absolute pressure by which a step towards it may change it. */
+#define STRIDE 0.2
+
+enum { PRESSURE_STEPS = 120 };
 
 /* ---- creation ----------------------------------------------------------------------------- */
 
@@ -178,8 +181,10 @@ static double solve_pressure(const struct bistable_system *s, int a, const doubl
       slope = (excess - last_excess) / (p - last);
     }
     double next = p - excess / slope;
+    double most = STRIDE * (p - floor); /* not to leave the nearest of several pressures */
+    next = fmin(fmax(next, p - most), p + most);
     if (!(next > low && next < high)) {
-      next = isinf(high) ? 2.0 * p - floor : 0.5 * (low + high);
+      next = isinf(high) ? p + most : 0.5 * (low + high);
     }
     last = p;
     last_excess = excess;

@@ -135,6 +135,31 @@ START_TEST(order_does_not_matter) {
 }
 END_TEST
 
+/* A return of h by some micrometres within a side, as of walls that touch, is no branch of its own:
+ * the sides stay what they are. */
+START_TEST(small_folds_are_stepped_over) {
+  struct law_spec spec;
+  struct law *law;
+  struct error error = {.status = STATUS_OK};
+  make_law(&fold_pair, true, &spec, &law);
+  double ends[2] = {law_end(law, LAW_COMPRESSED, 13e3), law_end(law, LAW_STRETCHED, 13e3)};
+  struct law_value whole, stepped;
+  law_evaluate(law, LAW_STRETCHED, 10e-3, 13e3, &whole);
+  law_destroy(law);
+  struct law_level *level = &spec.table.level[3];
+  for (size_t i = POINTS - 30; i < POINTS - 20; i++) {
+    level->h[i] = level->h[POINTS - 31] - 1e-6 * (double)(i - (POINTS - 31));
+  }
+  ck_assert_msg(law_create(&spec, &law, &error) == STATUS_OK, "%s", error.message);
+  ck_assert_double_eq_tol(law_end(law, LAW_COMPRESSED, 13e3), ends[0], 1e-12);
+  ck_assert_double_eq_tol(law_end(law, LAW_STRETCHED, 13e3), ends[1], 1e-12);
+  law_evaluate(law, LAW_STRETCHED, 10e-3, 13e3, &stepped);
+  ck_assert_double_eq_tol(stepped.force, whole.force, 0.05 * fabs(whole.force));
+  law_destroy(law);
+  law_table_release(&spec.table);
+}
+END_TEST
+
 /* A quintic with two falling stretches: limits are the outer ones. */
 START_TEST(closed_forms) {
   struct law_spec spec = {.count = 4,
@@ -168,6 +193,7 @@ int main(void) {
   tcase_add_loop_test(tcase, force_and_volume_derive_from_the_potential, 0, 2);
   tcase_add_test(tcase, limits_and_rests);
   tcase_add_test(tcase, order_does_not_matter);
+  tcase_add_test(tcase, small_folds_are_stepped_over);
   tcase_add_test(tcase, closed_forms);
   suite_add_tcase(suite, tcase);
   return suite_run(suite);
