@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "solver/hlpv/linear.h"
 #include "solver/hlpv/tracking.h"
 
 /* Part of a step's change within which h has settled. */
@@ -107,17 +108,12 @@ static void take_speed(struct recorder *recorder, double velocity) {
 
 static void find_steady(const struct recorder *recorder, int mode, struct hlpv_hold *hold) {
   const struct hlpv_spec *spec = recorder->spec;
-  const struct hlpv_mode *m = &spec->mode[mode];
-  double u = hold->set_point;
-  double k = hlpv_polynomial_value(&m->stiffness, u), b = hlpv_polynomial_value(&m->damping, u);
-  double alpha = hlpv_polynomial_value(&m->alpha, u);
-  double x[HLPV_STATES] = {0};
+  double u = hold->set_point, x[HLPV_STATES] = {0};
   hold->steady_h = hold->steady_pressure = NAN;
-  if (!(k > 0.0 && b > 0.0 && alpha < 0.0)) {
+  if (!(hlpv_polynomial_value(&spec->mode[mode].damping, u) > 0.0) ||
+      !linear_rest(spec, mode, u, x)) {
     return;
   }
-  x[HLPV_PRESSURE] = -hlpv_polynomial_value(&m->beta, u) * u / alpha;
-  x[HLPV_H] = m->rest + spec->gamma * x[HLPV_PRESSURE] / k;
   for (int i = 0; i < spec->transition_count; i++) {
     const struct hlpv_transition *t = &spec->transition[i];
     if (t->from == mode && t->direction * (x[t->quantity] - t->level) > 0.0) {

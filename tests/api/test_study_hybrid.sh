@@ -80,19 +80,34 @@ wavy() {
     | .base.tolerance = 1e-12 | .base.sample_rate = \"0.01 Hz\" | ${2:-.}"
 }
 
+# lines FILE COUNT: waits until a file has so many lines.
+lines() {
+  for _ in $(seq 1500); do
+    [ -s "$1" ] && [ "$(wc -l < "$1")" -ge "$2" ] && return
+    sleep 0.02
+  done
+}
+# workers PID: waits for processes that solve members, and prints their ids.
+workers() {
+  for _ in $(seq 1500); do
+    pgrep -P "$1" && return
+    sleep 0.02
+  done
+}
+
 # Killed and resumed.
 wavy '15 s' > "$WORK/long.json"
 "$BIN/pneulab-solve" --out "$WORK/out" --jobs 2 --events "$WORK/events" "$WORK/long.json" > "$WORK/killed.out" &
 solver=$!
-for _ in $(seq 400); do
-  [ "$(cat "$WORK/events" 2> /dev/null | wc -l)" -ge 5 ] && break
-  sleep 0.02
-done
-workers=$(pgrep -P "$solver")
+lines "$WORK/events" 5
+left=$(workers "$solver")
 kill -KILL "$solver"
 wait "$solver" 2> /dev/null
-sleep 0.3
-for worker in $workers; do
+for worker in $left; do
+  for _ in $(seq 250); do
+    [ "$(alive "$worker")" = no ] && break
+    sleep 0.02
+  done
   check "its processes end with it" no "$(alive "$worker")"
 done
 "$BIN/pneulab-solve" --out "$WORK/out" "$WORK/long.json" > "$WORK/resumed.out"
@@ -106,7 +121,7 @@ check "the result is as without the kill" "$(jq -c '[.members[].metrics]' "$WORK
 wavy '2e5 s' > "$WORK/endless.json"
 "$BIN/pneulab-solve" "$WORK/endless.json" > "$WORK/cancelled.out" &
 solver=$!
-sleep 0.7
+workers "$solver" > /dev/null
 kill -TERM "$solver"
 wait "$solver"
 check "cancelled" 5 "$?"
@@ -124,10 +139,7 @@ check "without the member that ran out of time" "succeeded:,diverged:timeout,suc
 # A process that is killed takes one member with it, not the others.
 "$BIN/pneulab-solve" --jobs 1 --events "$WORK/events2" "$WORK/long.json" > "$WORK/crash.out" &
 solver=$!
-for _ in $(seq 400); do
-  [ "$(cat "$WORK/events2" 2> /dev/null | wc -l)" -ge 3 ] && break
-  sleep 0.02
-done
+lines "$WORK/events2" 3
 pkill -KILL -P "$solver"
 wait "$solver"
 check "the study goes on" 0 "$?"
