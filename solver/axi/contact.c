@@ -65,7 +65,7 @@ static enum status stiffen(struct axi_contact *c, double stiffness, struct error
       status = error_set(error, STATUS_INVALID, NULL, "edge %d of the mesh has no element", k);
       break;
     }
-    double depth = meridian_area(mesh, &mesh->element[e]) / c->edge[k].length;
+    double depth = fmin(0.2 * c->wall, meridian_area(mesh, &mesh->element[e]) / c->edge[k].length);
     softest =
         fmin(softest, 60 * material_shear_modulus(&mesh->region[mesh->element[e].region]) / depth);
   }
@@ -84,9 +84,9 @@ static void set_lengths(struct axi_contact *c, double offset) {
   for (int k = 0; k < c->edge_count; k++) {
     length += c->edge[k].length;
   }
-  double wall = length > 0 ? 2 * area / length : 0;
-  c->offset = offset > 0 ? offset : wall / 200;
-  c->reach = 0.6 * wall;
+  c->wall = length > 0 ? 2 * area / length : 0;
+  c->offset = offset > 0 ? offset : c->wall / 200;
+  c->reach = 0.6 * c->wall;
 }
 
 /* ---- chains ------------------------------------------------------------------------------ */

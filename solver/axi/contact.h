@@ -64,6 +64,7 @@ struct axi_contact {
   struct axi_contact_chain *chain;
   bool periodic;
   double period;         /* undeformed, m */
+  double wall;           /* twice the area of the meridian over the length of its surfaces, m */
   double offset;         /* delta, m */
   double reach;          /* deepest overlap that is understood as one, m */
   int near_count;        /* of the last evaluation */
@@ -77,10 +78,10 @@ struct axi_contact {
   int box_count;
 };
 
-/* Finds the surfaces. stiffness 0: 60 times shear modulus over depth of the element at the edge,
- * whatever is softer of its surface's; offset 0: 1/200 of the wall, twice the meridian's area over
- * the length of its surfaces. `mesh` must outlive the contact. STATUS_NO_MEMORY, or STATUS_INVALID
- * for an edge that belongs to no element. */
+/* Finds the surfaces. stiffness 0: 60 times shear modulus over depth, at most a fifth of the wall,
+ * of the element at an edge, the softest of all edges; offset 0: 1/200 of the wall. `mesh` must
+ * outlive the contact. STATUS_NO_MEMORY, or STATUS_INVALID for an edge that belongs to no element.
+ */
 enum status axi_contact_create(const struct axi_mesh *mesh, double stiffness, double offset,
                                struct axi_contact **out, struct error *error);
 void axi_contact_destroy(struct axi_contact *contact);

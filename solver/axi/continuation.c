@@ -91,7 +91,8 @@ static double cosine(const struct follower *f, const struct path_state *a,
 }
 
 /* Whether the candidate is further from the tangent than twice what an arc would be that turns by
- * the largest angle: then it is on another branch. */
+ * the largest angle: then it is on another branch. Where points of contact change their partner the
+ * path itself has small steps: they are let pass. */
 static bool strayed(const struct follower *f, double step) {
   const struct continuation_system *s = f->work.system;
   double scale = f->work.options->lambda_scale;
@@ -100,7 +101,8 @@ static bool strayed(const struct follower *f, double step) {
     double d = f->next.x[i] - f->now.x[i] - step * f->now.t[i];
     sum += s->weight[i] * d * d;
   }
-  return sqrt(sum) > 2 * tan(0.5 * f->work.options->angle_max) * fabs(step);
+  double small = 0.1 * f->work.options->step;
+  return sqrt(sum) > fmax(small, 2 * tan(0.5 * f->work.options->angle_max) * fabs(step));
 }
 
 /* From now by `step` along the tangent to f->next. */
