@@ -135,6 +135,10 @@ static void count_stable(struct snap_study *study) {
 /* Up to which pressure the compressed branch is stable against waves around the circumference. */
 static void look_at_waves(struct snap_study *study) {
   struct snap_metrics *m = &study->metrics;
+  if (!study->body.harmonics) {
+    snap_study_warn(study, "a shell does not touch itself and is not tested for waves around the "
+                           "circumference: the model \"solid\" is");
+  }
   for (int i = 0; i < study->waves_count; i++) {
     const struct snap_waves *waves = &study->waves[i];
     if (strcmp(waves->path, "pressure") != 0 || m->critical_harmonic >= 0) {
