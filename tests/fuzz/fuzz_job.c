@@ -5,6 +5,7 @@
 
 #include "solver/job/bistable.h"
 #include "solver/job/hlpv.h"
+#include "solver/job/identify.h"
 #include "solver/job/spec.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -23,6 +24,10 @@ static void check_error(const struct error *error, enum status status) {
 static bool is_complete(const struct job_spec *spec) {
   if (spec->kind == JOB_VERIFY) {
     return spec->verify.name[0] != '\0' && spec->verify.refinement >= 1;
+  }
+  if (spec->kind == JOB_IDENTIFY) {
+    return json_is_object(spec->document) && spec->identify->mode_count >= 1 &&
+           spec->identify->time.si > 0.0;
   }
   if (spec->kind == JOB_HLPV) {
     return spec->hlpv->mode_count >= 1 && spec->hlpv->mass > 0.0 && spec->hlpv->end > 0.0;

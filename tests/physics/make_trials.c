@@ -24,7 +24,7 @@ static void print_trial(int number, const struct synthetic_trial *trial, double 
   for (size_t i = 0; i < trial->count; i++) {
     double h = trial->h[i] + gsl_ran_gaussian(generator, sigma_h);
     double p = trial->pressure[i] + gsl_ran_gaussian(generator, sigma_p);
-    printf("%d,%.5g,%.6g,%.3f,%.3f\n", number, trial->time[i], 1e-3 * trial->set_point[i], 1e3 * h,
+    printf("%d,%.7g,%.6g,%.3f,%.3f\n", number, trial->time[i], 1e-3 * trial->set_point[i], 1e3 * h,
            1e-3 * p);
   }
 }
