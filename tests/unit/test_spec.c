@@ -336,13 +336,14 @@ END_TEST
 
 /* Reads a file below the source directory into static storage, with a NUL behind it. */
 static const char *read_source_file(const char *name, size_t *size) {
-  static char text[1 << 16];
+  static char text[1 << 18];
   const char *source = getenv("srcdir");
   char path[600];
   snprintf(path, sizeof path, "%s/%s", source ? source : ".", name);
   FILE *file = fopen(path, "rb");
   ck_assert_msg(file != NULL, "%s cannot be opened", path);
   *size = fread(text, 1, sizeof text - 1, file);
+  ck_assert_msg(fgetc(file) == EOF, "%s is larger than expected", path);
   fclose(file);
   text[*size] = '\0';
   return text;
