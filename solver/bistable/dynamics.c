@@ -69,13 +69,14 @@ static void add_hybrid(const struct job_spec *spec, const struct bistable_system
   }
 }
 
-/* The length of the row at h = 0: that of the job, or the compressed one of the paths. */
+/* The length of the row at h = 0: of one pair that of the job, or the compressed one of the paths.
+ */
 static double rest_length(const struct job_spec *spec, const json_t *document) {
   const json_t *length =
       json_object_get(json_object_get(document, "metrics"), "compressed_length_mm");
-  return spec->snap->rest_length > 0.0
-             ? spec->snap->rest_length
-             : 1e-3 * json_number_value(length) * spec->bistable->cell_count;
+  double pair =
+      spec->snap->rest_length > 0.0 ? spec->snap->rest_length : 1e-3 * json_number_value(length);
+  return pair * spec->bistable->cell_count;
 }
 
 static void add_motion(const struct bistable_system *system, const struct bistable_trajectory *t,

@@ -4,6 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Part of the range of a table beyond which a state is outside it. */
+#define BEYOND 1e-3
+
 enum { MOMENTS_MAX = 2000000 };
 
 /* Room for one more of `size` bytes. */
@@ -60,14 +63,15 @@ static void look_outside(struct bistable_recorder *s, double time, const double 
     if (!s->system->spec->law[spec->law].is_table) {
       continue;
     }
-    if ((e < h[0] || e > h[1]) && !s->outside_h[spec->law]) {
+    double near_h = BEYOND * (h[1] - h[0]), near_p = BEYOND * (p[1] - p[0]);
+    if ((e < h[0] - near_h || e > h[1] + near_h) && !s->outside_h[spec->law]) {
       s->outside_h[spec->law] = true;
       bistable_warn(s->out,
                     "at %.6g s a cell of the law \"%.40s\" is at %.4g mm, outside its table, %.4g "
                     "to %.4g mm: the force is carried on straight",
                     time, name, 1e3 * e, 1e3 * h[0], 1e3 * h[1]);
     }
-    if ((pressure < p[0] || pressure > p[1]) && !s->outside_p[spec->law]) {
+    if ((pressure < p[0] - near_p || pressure > p[1] + near_p) && !s->outside_p[spec->law]) {
       s->outside_p[spec->law] = true;
       bistable_warn(s->out,
                     "at %.6g s the pressure on the law \"%.40s\" is %.4g kPa, outside its table, "
