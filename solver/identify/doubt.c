@@ -105,13 +105,16 @@ enum status doubt_swings(struct identification *id, struct error *error) {
 
 /* ---- inertia ------------------------------------------------------------------------------ */
 
-/* Divides the mass by a factor, or multiplies everything else. */
+/* Divides the mass by a factor, or multiplies everything else; nothing swings any more. */
 static void lighten(struct identification *id, double factor) {
   id->mass.value /= id->mass.free ? factor : 1.0;
   id->gamma.value *= id->gamma.free ? factor : 1.0;
-  for (size_t i = 0; i < id->point_count && id->gamma.free; i++) {
-    id->estimate[i].value[IDENTIFY_STIFFNESS] *= factor;
-    id->estimate[i].value[IDENTIFY_DAMPING] *= factor;
+  for (size_t i = 0; i < id->point_count; i++) {
+    double *value = id->estimate[i].value;
+    value[IDENTIFY_STIFFNESS] *= id->gamma.free ? factor : 1.0;
+    value[IDENTIFY_DAMPING] *= id->gamma.free ? factor : 1.0;
+    double critical = 2.0 * sqrt(value[IDENTIFY_STIFFNESS] * id->mass.value);
+    value[IDENTIFY_DAMPING] = fmax(value[IDENTIFY_DAMPING], calm * critical);
   }
 }
 

@@ -12,7 +12,7 @@
 #include "solver/identify/doubt.h"
 #include "solver/identify/start.h"
 
-enum { ROUNDS_MAX = 4, ITERATIONS_MAX = 100 };
+enum { ROUNDS_MAX = 4, ITERATIONS_MAX = 50 };
 
 /* One call of the least-squares solver. */
 struct task {
