@@ -2,7 +2,8 @@
  * output, for an identify job. The published protocol, 10 s at 1 to 4 psi compressed and at 1 to 8
  * psi stretched and 10 s back at 0, three of each, after 0.25 s at 0; then three runs that snap and
  * come back by vacuum. NOISE is the standard deviation of the normal noise of h and pressure, a
- * part of the range of each in its trial. 120 Hz before the first step and for half a second after each, 5 Hz then. */
+ * part of the range of each in its trial. 120 Hz before the first step and for half a second after
+ * each, 5 Hz then. */
 #include <gsl/gsl_randist.h>
 #include <stdlib.h>
 #include <string.h>

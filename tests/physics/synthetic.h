@@ -11,8 +11,8 @@ struct synthetic_run {
   double up, down; /* set-points, Pa */
 };
 
-/* When samples are taken: `fast` Hz before the first step of the set-point and for `fast_time` after
- * each (all the time where fast_time is 0), `slow` Hz otherwise. */
+/* When samples are taken: `fast` Hz before the first step of the set-point and for `fast_time`
+ * after each (all the time where fast_time is 0), `slow` Hz otherwise. */
 struct synthetic_plan {
   double before, hold; /* s at 0, and at each of the two set-points */
   double fast, fast_time, slow;
