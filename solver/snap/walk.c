@@ -126,6 +126,9 @@ enum status snap_walk_along(struct snap_walk *walk, const struct axi_ramp *ramp,
   options.deadline_s = study->deadline_s;
   options.cancelled = study->cancelled;
   options.steps_max = 4000;
+  /* Where walls come into touch the path turns within a few nanometres. */
+  options.angle_max = 1.0;
+  options.tolerance *= 100.0;
   walk->waves_at = -INFINITY;
   walk->status = STATUS_OK;
   enum status status = study->body.follow(study->body.self, ramp, &options, direction, NULL, visit,
