@@ -40,6 +40,6 @@ check_match "it has a plot of its path" "/plots/snap-path.png" "$links"
 
 fetch POST /api/v1/jobs --data-binary "${bellows/40 deg/60 deg}"
 check "shells in the wrong order are refused" "422 /actuator/snapping_angle" "$CODE $(field .pointer)"
-fetch POST /api/v1/jobs --data-binary "${bellows/6 mm/30 mm}"
+fetch POST /api/v1/jobs --data-binary "${bellows/\"6 mm\"/\"30 mm\"}"
 check "so are shells that cross the axis" "422 /actuator/snapping_slant" "$CODE $(field .pointer)"
 finish
