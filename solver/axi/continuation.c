@@ -16,10 +16,11 @@ struct follower {
   int count;     /* of quantities */
   double *value; /* 3 x count: at now (with the sign of the way ahead), at next, at trial */
   double *room;
-  double step; /* next length */
-  int visited; /* factorisations until the last visit */
-  int settled; /* negative pivots at the last state that was no limit point */
-  int limits;  /* limit points since */
+  double step;  /* next length */
+  double angle; /* by which the tangent may turn now */
+  int visited;  /* factorisations until the last visit */
+  int settled;  /* negative pivots at the last state that was no limit point */
+  int limits;   /* limit points since */
 };
 
 struct continuation_options continuation_defaults(double size) {
@@ -102,7 +103,7 @@ static bool strayed(const struct follower *f, double step) {
     sum += s->weight[i] * d * d;
   }
   double small = 0.1 * f->work.options->step;
-  return sqrt(sum) > fmax(small, 2 * tan(0.5 * f->work.options->angle_max) * fabs(step));
+  return sqrt(sum) > fmax(small, 2 * tan(0.5 * f->angle) * fabs(step));
 }
 
 /* From now by `step` along the tangent to f->next. */
@@ -115,7 +116,7 @@ static enum status advance(struct follower *f, double step, double *turned, stru
   f->next.arc = f->now.arc + step;
   enum status status = path_correct(&f->work, &f->now, step, &f->next, error);
   *turned = status == STATUS_OK ? acos(fmin(1, cosine(f, &f->now, &f->next))) : 0;
-  if (status == STATUS_OK && (*turned > f->work.options->angle_max || strayed(f, step))) {
+  if (status == STATUS_OK && (*turned > f->angle || strayed(f, step))) {
     status = error_set(error, STATUS_DIVERGED, NULL, "the path turns too sharply");
   }
   return status;
@@ -306,37 +307,59 @@ static double next_step(const struct continuation_options *o, double step, int i
   return fmin(o->step_max, step * fmin(2, fmax(0.4, factor)));
 }
 
-/* One step with everything located on it. *go_on is what the visitor says. */
+/* A step of a given length with everything located on it. *go_on is what the visitor says. */
+static enum status step_by(struct follower *f, double step, bool *go_on, struct error *error) {
+  const struct continuation_options *o = f->work.options;
+  int before = f->work.factorisations, passed = -1;
+  double turned = 0;
+  enum status status = advance(f, step, &turned, error);
+  double grown = next_step(o, step, f->work.factorisations - before, turned);
+  if (status == STATUS_OK) {
+    status = stop_at_passage(f, &passed, error);
+  }
+  if (status == STATUS_OK) {
+    accept(f, passed);
+    f->step = passed >= 0 ? fmin(grown, step) : grown;
+    *go_on = show(f, passed, 0);
+  } else if (o->verbose > 0) {
+    fprintf(stderr, "path: step %.3g failed: %s\n", step, error ? error->message : "");
+  }
+  return status;
+}
+
+/* Where steps fail however short, the path has a gap: a point of contact is between two partners,
+ * and with either of them there is no equilibrium. The path goes on beyond, at the shortest of some
+ * distances that is far enough, where it may have turned more than elsewhere. */
+static enum status leap(struct follower *f, bool *go_on, struct error *error) {
+  static const double reach[] = {0.01, 0.03, 0.1, 0.3, 1, 3};
+  enum status status = STATUS_DIVERGED;
+  f->angle = fmax(f->angle, 1.2);
+  for (size_t k = 0; k < sizeof reach / sizeof *reach && continuation_retry(status); k++) {
+    status = step_by(f, reach[k] * f->work.options->step, go_on, error);
+  }
+  f->angle = f->work.options->angle_max;
+  return status;
+}
+
 static enum status step_once(struct follower *f, bool *go_on, struct error *error) {
   const struct continuation_options *o = f->work.options;
   for (;;) {
-    double step = f->step, turned = 0;
-    int before = f->work.factorisations, passed = -1;
+    double step = f->step;
     if (o->lambda_step_max > 0 && fabs(step * f->now.rate) > o->lambda_step_max) {
       step = o->lambda_step_max / fabs(f->now.rate);
     }
-    enum status status = advance(f, step, &turned, error);
-    double grown = next_step(o, step, f->work.factorisations - before, turned);
-    if (status == STATUS_OK) {
-      status = stop_at_passage(f, &passed, error);
-    }
-    if (status == STATUS_OK) {
-      accept(f, passed);
-      f->step = passed >= 0 ? fmin(grown, step) : grown;
-      *go_on = show(f, passed, 0);
-      return STATUS_OK;
-    }
+    enum status status = step_by(f, step, go_on, error);
     if (!continuation_retry(status)) {
       return status;
     }
-    if (o->verbose > 0) {
-      fprintf(stderr, "path: step %.3g failed: %s\n", step, error ? error->message : "");
-    }
     f->step = 0.35 * step;
     if (f->step < o->step_min) {
-      return error_set(error, STATUS_STEP_MINIMUM, NULL,
-                       "the step along the path fell below %.3g at lambda = %.6g", o->step_min,
-                       f->now.lambda);
+      status = leap(f, go_on, error);
+      return !continuation_retry(status)
+                 ? status
+                 : error_set(error, STATUS_STEP_MINIMUM, NULL,
+                             "the step along the path fell below %.3g at lambda = %.6g",
+                             o->step_min, f->now.lambda);
     }
   }
 }
@@ -370,7 +393,8 @@ enum status continuation_follow(const struct continuation_system *system,
   struct follower f = {.work = {.system = system, .options = options},
                        .visit = visit,
                        .visit_context = visit_context,
-                       .step = fmin(options->step, options->step_max)};
+                       .step = fmin(options->step, options->step_max),
+                       .angle = options->angle_max};
   enum status status = reserve(&f, error);
   if (status != STATUS_OK) {
     return status;

@@ -60,7 +60,8 @@ struct continuation_options {
   double step_max;
   double lambda_scale;    /* of the metric; 0: cylindrical */
   double lambda_step_max; /* largest |dlambda| of a predictor; 0: none */
-  double tolerance;       /* metric of the last correction */
+  double
+      tolerance; /* metric of the last correction; a hundred times that where corrections swing */
   double angle_max;       /* rad, largest angle between the tangents of successive states; larger
                            * ones are taken for a jump to another branch */
   double increment_max;   /* largest |dx_i| of one correction; 0: none */

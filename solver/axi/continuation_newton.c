@@ -42,6 +42,10 @@ bool continuation_retry(enum status status) {
   return status == STATUS_DIVERGED || status == STATUS_INVERTED;
 }
 
+/* Corrections that swing to and fro within that many tolerances are let pass: a point of contact
+ * has two partners to choose from, between which the potential has a step. */
+static const double swing = 100;
+
 /* ---- at a fixed lambda ------------------------------------------------------------------- */
 
 /* Damped Newton's method with the natural monotonicity test of Deuflhard (2004): a step is taken
@@ -90,7 +94,8 @@ static enum status damp(struct newton *n, double length, double *next, struct er
     }
     s->solve(s->context, n->residual, n->next);
     *next = metric(s, n->next);
-    if (*next <= (1 - 0.25 * damping) * length || *next <= n->options->tolerance) {
+    double settled = (length <= swing * n->options->tolerance ? swing : 1) * n->options->tolerance;
+    if (*next <= (1 - 0.25 * damping) * length || *next <= settled) {
       memcpy(n->x, n->trial, sizeof *n->x * (size_t)s->size);
       n->damping = damping;
       return STATUS_OK;
@@ -117,7 +122,9 @@ static enum status iterate(struct newton *n, struct error *error) {
       fprintf(stderr, "  newton %d: step %.3g next %.3g damping %.3g negative %d\n", k, length,
               next, n->damping, n->negative);
     }
-    if (status == STATUS_OK && n->damping == 1 && next <= n->options->tolerance) {
+    bool swings = length <= swing * n->options->tolerance && next > 0.5 * length;
+    bool small = next <= (swings ? swing : 1) * n->options->tolerance;
+    if (status == STATUS_OK && n->damping == 1 && small) {
       for (int i = 0; i < n->system->size; i++) {
         n->x[i] -= n->next[i];
       }
@@ -239,6 +246,10 @@ enum status path_correct(struct path_work *work, const struct path_state *from, 
     /* The next correction of a quadratic sequence is at most length^2 / before. */
     if (length <= o->tolerance ||
         (k > 0 && length < 1e-3 * fabs(step) && length * length / before < 0.1 * o->tolerance)) {
+      path_tangent(work, from, to);
+      return STATUS_OK;
+    }
+    if (k > 1 && length <= swing * o->tolerance && length > 0.5 * before) {
       path_tangent(work, from, to);
       return STATUS_OK;
     }
