@@ -1,7 +1,10 @@
 #include "solver/bistable/system.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
+
+#include "solver/job/json.h"
 
 /* Part of the absolute pressure by which a step towards it may change it. */
 #define STRIDE 0.2
@@ -61,8 +64,15 @@ enum status system_open(const struct bistable_spec *spec, struct bistable_system
                         struct error *error) {
   *s = (struct bistable_system){.spec = spec};
   for (int i = 0; i < spec->law_count; i++) {
-    enum status status = law_create(&spec->law[i], &s->law[i], error);
+    const struct law_spec *law = &spec->law[i];
+    enum status status = law_create(law, &s->law[i], error);
     if (status != STATUS_OK) {
+      struct json_pointer pointer = {.length = 0};
+      json_pointer_key(&pointer, law->is_snap ? "snap" : "laws");
+      if (!law->is_snap) {
+        json_pointer_key(&pointer, law->name);
+      }
+      snprintf(error->pointer, sizeof error->pointer, "%s", pointer.text);
       return status;
     }
   }

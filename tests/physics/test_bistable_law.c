@@ -1,9 +1,11 @@
 /* Laws of cells from tables against the closed form that the tables were made of. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "solver/bistable/law.h"
+#include "solver/bistable/system.h"
 #include "tests/physics/fold_law.h"
 #include "tests/unit/suite.h"
 
@@ -186,6 +188,34 @@ START_TEST(closed_forms) {
 }
 END_TEST
 
+/* A path that goes nowhere is refused with its place. */
+START_TEST(a_table_without_order_is_refused) {
+  char text[4000], level[1500] = "";
+  static const double wild[] = {0, 3, 1, 4, 0.5, 5, 0.2, 0.1, 6, 0.05};
+  size_t used = 0;
+  for (size_t i = 0; i < sizeof wild / sizeof *wild; i++) {
+    used += (size_t)snprintf(level + used, sizeof level - used,
+                             "%s{\"h_mm\": %g, \"force_N\": %zu, \"volume_mm3\": 9000}",
+                             i ? "," : "", wild[i], i);
+  }
+  snprintf(text, sizeof text,
+           "{\"kind\": \"bistable\", \"laws\": {\"wild\": {\"table\": [{\"pressure_kPa\": 0, "
+           "\"points\": [%s]}, {\"pressure_kPa\": 9, \"points\": [%s]}]}}, \"actuators\": "
+           "[{\"cells\": [{\"law\": \"wild\", \"mass\": \"1 g\"}]}], \"plate\": {\"mass\": \"1 "
+           "g\"}, \"input\": {\"hold\": [[\"0 s\", \"0 kPa\"]]}, \"end\": \"1 s\"}",
+           level, level);
+  struct job_spec job;
+  struct bistable_system system;
+  struct error error = {.status = STATUS_OK};
+  ck_assert_msg(job_spec_read(text, strlen(text), &job, &error) == STATUS_OK, "%s", error.message);
+  ck_assert_int_eq(system_open(job.bistable, &system, &error), STATUS_INVALID);
+  ck_assert_str_eq(error.pointer, "/laws/wild");
+  ck_assert_ptr_nonnull(strstr(error.message, "at 0 kPa the path turns back"));
+  system_close(&system);
+  job_spec_release(&job);
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("bistable: laws of cells");
   TCase *tcase = tcase_create("all");
@@ -195,6 +225,7 @@ int main(void) {
   tcase_add_test(tcase, order_does_not_matter);
   tcase_add_test(tcase, small_folds_are_stepped_over);
   tcase_add_test(tcase, closed_forms);
+  tcase_add_test(tcase, a_table_without_order_is_refused);
   suite_add_tcase(suite, tcase);
   return suite_run(suite);
 }
