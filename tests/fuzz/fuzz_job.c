@@ -5,6 +5,7 @@
 
 #include "solver/job/bistable.h"
 #include "solver/job/hlpv.h"
+#include "solver/job/snap.h"
 #include "solver/job/identify.h"
 #include "solver/job/spec.h"
 #include "tests/fuzz/fuzz.h"
@@ -31,6 +32,9 @@ static bool is_complete(const struct job_spec *spec) {
   }
   if (spec->kind == JOB_HLPV) {
     return spec->hlpv->mode_count >= 1 && spec->hlpv->mass > 0.0 && spec->hlpv->end > 0.0;
+  }
+  if (spec->kind == JOB_SNAP) {
+    return spec->snap->pair_count >= 1 && spec->snap->pressure_to > 0.0;
   }
   if (spec->kind == JOB_BISTABLE) {
     return spec->bistable->cell_count >= 1 && spec->bistable->cell[0].mass > 0.0 &&
