@@ -184,6 +184,8 @@ enum status folded_state(const struct snap_spec *spec, struct bellows *bellows,
   struct continuation_options options = axi_defaults(model);
   options.deadline_s = limits->deadline_s;
   options.cancelled = limits->cancelled;
+  options.angle_max = 1.0;
+  options.tolerance *= 100.0;
   struct material_spec *region = bellows->mesh.region;
   region[BELLOWS_SILICONE].bulk_ratio = fmin(foam, spec->silicone.bulk_ratio);
   region[BELLOWS_PET].c[0] *= soft;

@@ -117,8 +117,30 @@ static bool visit(void *context, const struct axi_state *state,
   return walk->status == STATUS_OK && walk->go_on(walk, state, point) && walk->status == STATUS_OK;
 }
 
-enum status snap_walk_along(struct snap_walk *walk, const struct axi_ramp *ramp, int direction,
-                            int target_count, const double *target, struct axi_state *state) {
+/* What was recorded before an attempt. */
+struct record {
+  int points, events, waves;
+};
+
+static void forget(struct snap_walk *walk, const struct record *before) {
+  struct snap_study *study = walk->study;
+  while (study->waves_count > before->waves) {
+    free(study->waves[--study->waves_count].negative);
+  }
+  walk->path->count = before->points;
+  study->event_count = before->events;
+}
+
+/* How a path is followed: where walls come into touch it turns within nanometres, and what gets
+ * through there differs from path to path. */
+static const struct {
+  double angle_max, tolerance, step; /* rad; the others relative to the defaults */
+} manners[] = {{0.5, 1.0, 1.0}, {1.0, 100.0, 1.0}, {0.5, 10.0, 0.4}, {1.0, 100.0, 0.25}};
+enum { MANNERS = sizeof manners / sizeof *manners };
+
+static enum status attempt(struct snap_walk *walk, int manner, const struct axi_ramp *ramp,
+                           int direction, int target_count, const double *target,
+                           struct axi_state *state) {
   struct snap_study *study = walk->study;
   struct continuation_options options = study->body.options(study->body.self);
   options.target_count = target_count;
@@ -126,15 +148,33 @@ enum status snap_walk_along(struct snap_walk *walk, const struct axi_ramp *ramp,
   options.deadline_s = study->deadline_s;
   options.cancelled = study->cancelled;
   options.steps_max = 4000;
-  /* Where walls come into touch the path turns within a few nanometres. */
-  options.angle_max = 1.0;
-  options.tolerance *= 100.0;
+  options.angle_max = manners[manner].angle_max;
+  options.tolerance *= manners[manner].tolerance;
+  options.step_max *= manners[manner].step;
   walk->waves_at = -INFINITY;
   walk->status = STATUS_OK;
   enum status status = study->body.follow(study->body.self, ramp, &options, direction, NULL, visit,
                                           walk, state, walk->error);
-  if (status == STATUS_OK) {
-    status = walk->status;
+  return status == STATUS_OK ? walk->status : status;
+}
+
+enum status snap_walk_along(struct snap_walk *walk, const struct axi_ramp *ramp, int direction,
+                            int target_count, const double *target, struct axi_state *state) {
+  struct snap_study *study = walk->study;
+  struct record before = {walk->path->count, study->event_count, study->waves_count};
+  struct axi_state start;
+  enum status status = snap_body_state(&study->body, &start, walk->error);
+  if (status != STATUS_OK) {
+    return status;
   }
+  snap_body_copy(&study->body, state, &start);
+  status = attempt(walk, 0, ramp, direction, target_count, target, state);
+  for (int k = 1; k < MANNERS && (status == STATUS_STEP_MINIMUM || status == STATUS_DIVERGED);
+       k++) {
+    forget(walk, &before);
+    snap_body_copy(&study->body, &start, state);
+    status = attempt(walk, k, ramp, direction, target_count, target, state);
+  }
+  axi_state_destroy(&start);
   return status;
 }
