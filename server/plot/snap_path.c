@@ -31,6 +31,7 @@ struct sheet {
   struct bundle bundle;
   struct chart_label labels[LABELS_MOST];
   size_t label_count, paths;
+  size_t first; /* labels of trigger and release, which come first */
 };
 
 /* Writes beside an event what it is at. Trigger and release are called so. */
@@ -58,6 +59,12 @@ static void label_event(const json_t *metrics, const char *type, struct point at
     ticks_number(at.y, 3, number);
     snprintf(label->text, sizeof label->text, "%s%s %s", word, number, sheet->unit);
     sheet->label_count++;
+    if (*word) {
+      /* what matters most has the first choice of a place */
+      struct chart_label other = sheet->labels[sheet->first];
+      sheet->labels[sheet->first++] = *label;
+      *label = other;
+    }
   } else if (strcmp(type, "stable state") == 0) {
     ticks_number(fabs(at.x) < 5e-3 ? 0 : at.x, 3, number);
     snprintf(label->text, sizeof label->text, "%s mm", number);
