@@ -34,6 +34,7 @@ const CAPTIONS = {
   coefficients: 'Identified coefficients with their polynomials',
   fitted: 'Trials, measured and simulated',
   snap: 'The fastest snap',
+  motion: 'Elongation of plate and cells, speed and pressure over time',
   'snap-path': 'Equilibrium under pressure and under axial force',
   shapes: 'Meridian in its states',
   held: 'Force at the natural length against pressure',

@@ -126,7 +126,10 @@ static struct finding from_result(const struct works *works, const json_t *rule)
   finding.error = json_is_number(error) ? fabs(factor) * json_number_value(error) : -1;
   const char *status = json_string_value(json_object_get(result, "status"));
   const char *reason = json_string_value(json_object_get(result, "reason"));
-  if (pointer && status && strcmp(status, "succeeded") != 0) {
+  const char *kind = json_string_value(json_object_get(result, "kind"));
+  bool of_states =
+      kind && strcmp(kind, "snap") == 0; /* its metrics are of states that were found */
+  if (pointer && status && strcmp(status, "succeeded") != 0 && !of_states) {
     finding.found = false; /* metrics of a path that was cut short are those of another load */
   }
   if (!finding.found) {

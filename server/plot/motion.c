@@ -165,12 +165,13 @@ static enum status draw_window(struct canvas *canvas, const struct plot_input *i
       {.label = "h (mm)"}, {.label = "h' (m/s)"}, {.label = "p (kPa)"}, {.label = "Angle (°)"}};
   struct chart charts[PANELS];
   struct words words;
+  const json_t *motion = motion_of(input->result);
   char notice[DATA_HEADING];
   data_notice(input->result, notice);
   for (size_t i = 0; i < PANELS; i++) {
     panels[i].window = window;
   }
-  enum status status = read_panels(input->result, &words, panels, error);
+  enum status status = read_panels(motion, &words, panels, error);
   size_t shown = panels[3].curves > 0 ? PANELS : PANELS - 1;
   for (size_t i = 0; i < shown; i++) {
     charts[i] =
@@ -201,11 +202,16 @@ enum status draw_motion(struct canvas *canvas, const struct plot_input *inputs, 
                      "Elongation of plate and cells, speed and pressure", subtitle, error);
 }
 
+const json_t *motion_of(const json_t *result) {
+  const json_t *motion = json_object_get(result, "motion");
+  return json_is_object(motion) ? motion : result;
+}
+
 const json_t *motion_fastest_snap(const json_t *result) {
   const json_t *fastest = NULL, *event;
   double speed = 0;
   size_t index;
-  json_array_foreach(json_object_get(result, "events"), index, event) {
+  json_array_foreach(json_object_get(motion_of(result), "events"), index, event) {
     const char *type = json_string_value(json_object_get(event, "type"));
     double peak = data_number(event, "peak_speed_m_s");
     if (type && strcmp(type, "snap") == 0 && peak > speed &&
@@ -233,7 +239,7 @@ enum status draw_snap(struct canvas *canvas, const struct plot_input *inputs, si
   size_t used = strlen(subtitle);
   ticks_number(data_number(event, "peak_speed_m_s"), 3, speed);
   ticks_number(1e3 * duration, 3, time);
-  snprintf(subtitle + used, DATA_HEADING - used, "%speak %s m/s, 10 to 90 %% of the way in %s ms",
+  snprintf(subtitle + used, DATA_HEADING - used, "%speak %s m/s, 10 to 90 %% in %s ms",
            used ? " · " : "", speed, time);
   return draw_window(canvas, inputs, window, "The fastest snap", subtitle, error);
 }

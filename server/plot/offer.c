@@ -116,6 +116,13 @@ const char *offer_steady(const struct plot_input *input) {
              : "fewer than two set-points were held";
 }
 
+const char *offer_motion(const struct plot_input *input) {
+  const json_t *motion = json_object_get(input->result, "motion");
+  return json_array_size(json_object_get(motion, "samples")) > 0
+             ? NULL
+             : "the job does not ask for dynamics";
+}
+
 const char *offer_snap(const struct plot_input *input) {
   return motion_fastest_snap(input->result) ? NULL : "nothing snapped";
 }

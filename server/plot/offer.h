@@ -19,6 +19,8 @@ const char *offer_metric(const struct plot_input *input);
 /* A hybrid model with two held set-points at least. */
 const char *offer_steady(const struct plot_input *input);
 
+/* A snap whose motion was computed. */
+const char *offer_motion(const struct plot_input *input);
 /* A motion in which a cell snapped. */
 const char *offer_snap(const struct plot_input *input);
 /* A hybrid model under position control. */

@@ -51,6 +51,8 @@ static const struct entry entries[] = {
     {"time", "bistable", draw_motion, NULL},
     {"phase", "bistable", draw_phase, NULL},
     {"snap", "bistable", draw_snap, offer_snap},
+    {"motion", "snap", draw_motion, offer_motion},
+    {"snap", "snap", draw_snap, offer_snap},
     {"overlay", NULL, draw_overlay, NULL},
 };
 

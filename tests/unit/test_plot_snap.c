@@ -147,6 +147,20 @@ START_TEST(one_load_alone) {
 }
 END_TEST
 
+/* The motion that a job asks for is part of its result. */
+START_TEST(a_snap_in_motion) {
+  char text[300];
+  json_t *snap = plot_sample_snap(35), *motion = plot_sample_motion(false);
+  size_t alone = picture_pixels("time", motion, GREEN);
+  json_object_set_new(snap, "motion", motion);
+  ck_assert_str_eq(picture_offered("snap", snap, text),
+                   "snap-path shapes held stability motion snap");
+  ck_assert_uint_eq(picture_pixels("motion", snap, GREEN), alone);
+  picture_at_all_sizes("snap", snap, "of-three");
+  json_decref(snap);
+}
+END_TEST
+
 static void draw_four(json_t *results[4], const char *name) {
   struct plot_input inputs[4];
   for (size_t i = 0; i < 4; i++) {
@@ -208,6 +222,7 @@ int main(void) {
   tcase_add_test(tcase, the_first_loss_is_the_lowest);
   tcase_add_test(tcase, losses_under_vacuum);
   tcase_add_test(tcase, one_load_alone);
+  tcase_add_test(tcase, a_snap_in_motion);
   tcase_add_test(tcase, four_designs_in_one_picture);
   tcase_add_test(tcase, elongation_without_a_ratio);
   suite_add_tcase(suite, tcase);
