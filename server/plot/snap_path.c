@@ -131,6 +131,12 @@ static enum status add_paths(const json_t *const paths[], bool words, struct she
                              .width = i ? 6 : 2.2};
     bool named[2] = {false, false};
     status = snap_add_path(&sheet->bundle, paths[i], &look, named, error);
+    if (i > 0 && status == STATUS_OK) {
+      /* where the first path did not come, the line is missing */
+      look = (struct snap_look){
+          .x_key = "h_mm", .y_key = sheet->y_key, .colour = colour_series(0), .width = 1.6};
+      status = snap_add_path(&sheet->bundle, paths[i], &look, named, error);
+    }
   }
   return status;
 }
