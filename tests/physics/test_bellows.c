@@ -1,5 +1,7 @@
 /* Meshes of bellows: what they enclose, how they lie, how they are held. */
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "solver/axi/element.h"
@@ -351,6 +353,35 @@ START_TEST(dimensions_that_exclude_each_other_are_refused) {
 }
 END_TEST
 
+static const char *const files[] = {"20A-0.18", "20A-0.25",           "30A-0.18",
+                                    "30A-0.25", "20A-0.25-calibrate", "20A-0.25-actuator"};
+
+/* One body but for the PET, the silicone and the number that is fitted. */
+START_TEST(the_jobs_of_the_project_are_of_one_body) {
+  static char text[1 << 14];
+  const char *source = getenv("srcdir");
+  char name[600];
+  snprintf(name, sizeof name, "%s/jobs/beast/snap-%s.json", source ? source : ".", files[_i]);
+  FILE *file = fopen(name, "rb");
+  ck_assert_msg(file != NULL, "%s cannot be opened", name);
+  size_t size = fread(text, 1, sizeof text - 1, file);
+  fclose(file);
+  struct job_spec job;
+  struct error error = {.status = STATUS_OK};
+  ck_assert_msg(job_spec_read(text, size, &job, &error) == STATUS_OK, "%s: %s", error.pointer,
+                error.message);
+  const struct snap_spec *s = job.snap;
+  bool hard = strncmp(files[_i], "30A", 3) == 0, thin = strstr(files[_i], "0.18") != NULL;
+  suite_check_near(s->crest_radius, 19e-3);
+  suite_check_near(s->silicone.c[0], hard ? 0.34e6 : 0.19e6);
+  suite_check_near(s->given.pet_thickness, thin ? 0.18e-3 : 0.25e-3);
+  suite_check_near(s->given.hinge_length, 3e-3);
+  ck_assert_double_eq_tol(s->given.snapping_slant, s->calibrate.asked ? 5e-3 : 5.173e-3, 1e-9);
+  ck_assert_double_eq_tol(s->rest_length * 3.0 / s->pair_count, 82e-3, 0.02e-3);
+  job_spec_release(&job);
+}
+END_TEST
+
 START_TEST(a_job_arrives_in_si_units) {
   struct job_spec job;
   snap_case_must_read(", \"pairs\": 2, \"rest_length\": \"82 mm\", \"imperfection\": "
@@ -394,6 +425,8 @@ int main(void) {
   tcase_add_test(shapes, walls_do_not_overlap);
   tcase_add_test(shapes, ends_are_held_as_asked);
   tcase_add_test(jobs, a_job_arrives_in_si_units);
+  tcase_add_loop_test(jobs, the_jobs_of_the_project_are_of_one_body, 0,
+                      (int)(sizeof files / sizeof *files));
   tcase_add_loop_test(jobs, impossible_bodies_are_refused, 0,
                       (int)(sizeof refused / sizeof *refused));
   tcase_add_loop_test(jobs, dimensions_that_exclude_each_other_are_refused, 0,
