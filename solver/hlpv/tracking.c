@@ -7,6 +7,8 @@
  * averaged. */
 #define SETTLED 0.02
 #define LAST_PART 0.1
+/* Distance to its aim, m, within which a step begins where it is to end. */
+#define THERE 1e-6
 
 enum { HALVINGS = 40, CYCLE_SWITCHES = 4 };
 
@@ -34,11 +36,13 @@ static void open_step(struct tracking *tracking, size_t index, double h, double 
                       const struct control_action *action) {
   const struct hlpv_input *reference = &tracking->control->reference;
   struct tracking_step *step = &tracking->step[tracking->count++];
+  bool again = index > 0 && reference->value[index] == reference->value[index - 1];
   *step = (struct tracking_step){.start = reference->time[index],
                                  .end = end,
                                  .reference = reference->value[index],
                                  .aim = action->target.h,
                                  .reached = action->target.reached,
+                                 .changes = !again && !(fabs(action->target.h - h) <= THERE),
                                  .mode = action->target.mode,
                                  .first = h,
                                  .last = h,
@@ -54,12 +58,12 @@ void tracking_sample(struct tracking *tracking, double time, double span, double
                      const struct control_action *action) {
   const struct hlpv_input *reference = &tracking->control->reference;
   struct tracking_step *step = present(tracking);
-  size_t begun = 0;
-  while (begun < tracking->room && reference->time[begun] <= time) {
-    begun++;
+  size_t before = tracking->begun;
+  while (tracking->begun < tracking->room && reference->time[tracking->begun] <= time) {
+    tracking->begun++;
   }
-  if (begun > 0 && (!step || step->start < reference->time[begun - 1])) {
-    open_step(tracking, begun - 1, h, end, action);
+  if (tracking->begun > before) {
+    open_step(tracking, tracking->begun - 1, h, end, action);
     step = present(tracking);
   }
   if (action->saturated) {
@@ -85,6 +89,9 @@ static double passage(const struct tracking_step *step, const struct hlpv_point 
 /* Takes in h at `time`, where it is or has come to. */
 static void take_value(struct tracking_step *step, double time, double h) {
   double change = step->aim - step->first;
+  if (!step->changes) {
+    return;
+  }
   step->beyond = fmax(step->beyond, (h - step->aim) / change);
   if (!(fabs(h - step->aim) <= SETTLED * fabs(change))) {
     step->outside = time;
@@ -132,16 +139,9 @@ static double entry(const struct tracking_step *step, const struct hlpv_point *a
   return a->time + in * (b->time - a->time);
 }
 
-void tracking_span(struct tracking *tracking, const struct hlpv_point *a,
-                   const struct hlpv_point *b) {
-  struct tracking_step *step = present(tracking);
-  if (!(b->time > a->time)) {
-    return;
-  }
-  take_error(tracking, a, b);
-  if (!step) {
-    return;
-  }
+/* Takes in the way of the change between two states. */
+static void take_change(struct tracking_step *step, const struct hlpv_point *a,
+                        const struct hlpv_point *b) {
   double change = step->aim - step->first, outside = step->outside;
   double part = (b->x[HLPV_H] - step->first) / change;
   if (isnan(step->time10) && part >= 0.1) {
@@ -159,6 +159,21 @@ void tracking_span(struct tracking *tracking, const struct hlpv_point *a,
   if (was_out && step->outside == outside) {
     step->outside = entry(step, a, b);
   }
+}
+
+void tracking_span(struct tracking *tracking, const struct hlpv_point *a,
+                   const struct hlpv_point *b) {
+  struct tracking_step *step = present(tracking);
+  if (!(b->time > a->time)) {
+    return;
+  }
+  take_error(tracking, a, b);
+  if (!step) {
+    return;
+  }
+  if (step->changes) {
+    take_change(step, a, b);
+  }
   take_area(step, a, b);
   step->last = b->x[HLPV_H];
 }
@@ -168,7 +183,8 @@ void tracking_switch(struct tracking *tracking, const struct hlpv_event *event, 
   if (!step) {
     return;
   }
-  double part = (event->after[HLPV_H] - step->first) / (step->aim - step->first);
+  double part =
+      step->changes ? (event->after[HLPV_H] - step->first) / (step->aim - step->first) : NAN;
   step->switches++;
   step->mode = mode;
   step->last_switch = event->time;
@@ -184,7 +200,7 @@ double tracking_rise(const struct tracking_step *step) {
 
 double tracking_settling(const struct tracking_step *step) {
   bool inside = fabs(step->last - step->aim) <= SETTLED * fabs(step->aim - step->first);
-  return inside ? step->outside - step->start : NAN;
+  return inside && step->changes ? step->outside - step->start : NAN;
 }
 
 double tracking_steady_error(const struct tracking_step *step) {

@@ -10,6 +10,7 @@ struct tracking_step {
   double start, end, reference;
   double aim;   /* what the controller aimed at in its place, m; NAN: at nothing */
   bool reached; /* aim is the reference */
+  bool changes; /* aim is another one than before: only then it has overshoot, rise and settling */
   int mode;     /* at the end */
   int switches;
   double first;          /* elongation at the start */
@@ -26,6 +27,7 @@ struct tracking {
   const struct hlpv_control *control;
   size_t count, room;
   struct tracking_step *step; /* of a held reference, else none; owned */
+  size_t begun;               /* values of it that hold or have held */
   double squares, most;       /* integral of the squared error; largest error, m */
   double saturated;           /* s */
 };

@@ -12,11 +12,11 @@ void result_control_metrics(json_t *metrics, const struct hlpv_trajectory *t) {
   int unsettled = 0, cycles = 0, missed = 0;
   for (size_t i = 0; i < tracking->count; i++) {
     const struct tracking_step *step = &tracking->step[i];
-    overshoot = fmax(overshoot, 100 * step->beyond);
+    overshoot = fmax(overshoot, step->changes ? 100 * step->beyond : NAN);
     rise = fmax(rise, tracking_rise(step));
     settling = fmax(settling, tracking_settling(step));
     steady = fmax(steady, 1e3 * fabs(tracking_steady_error(step)));
-    unsettled += isnan(tracking_settling(step));
+    unsettled += step->changes && isnan(tracking_settling(step));
     cycles += tracking_cycles(step);
     missed += !step->reached;
   }
@@ -46,7 +46,7 @@ static json_t *step_object(const struct hlpv_spec *spec, const struct tracking_s
   json_object_set_new(o, "switches", json_integer(step->switches));
   json_set_finite(o, "start_h_mm", 1e3 * step->first);
   json_set_finite(o, "end_h_mm", 1e3 * step->last);
-  json_set_finite(o, "overshoot_pct", 100 * step->beyond);
+  json_set_finite(o, "overshoot_pct", step->changes ? 100 * step->beyond : NAN);
   json_set_finite(o, "rise_time_s", tracking_rise(step));
   json_set_finite(o, "settling_time_s", tracking_settling(step));
   json_set_finite(o, "steady_error_mm", 1e3 * tracking_steady_error(step));
