@@ -6,6 +6,7 @@
 #include "server/plot/bundle.h"
 #include "server/plot/data.h"
 #include "server/plot/draw.h"
+#include "solver/base/numbers.h"
 
 enum { COEFFICIENTS = 4, MODES_MOST = 8, POINTS_MOST = 200 };
 
@@ -25,11 +26,6 @@ struct interval {
 
 /* An interval so many times as wide as the middle one is cut at the axes. */
 static const double WIDE = 10;
-
-static int compare_numbers(const void *left, const void *right) {
-  double a = *(const double *)left, b = *(const double *)right;
-  return (a > b) - (a < b);
-}
 
 static bool read_interval(const json_t *entry, const json_t *set_point_of,
                           struct interval *interval) {
@@ -54,7 +50,7 @@ static double widest_shown(const json_t *modes, const char *key) {
       }
     }
   }
-  qsort(halves, count, sizeof *halves, compare_numbers);
+  qsort(halves, count, sizeof *halves, numbers_compare);
   return count ? WIDE * halves[count / 2] : INFINITY;
 }
 

@@ -89,21 +89,16 @@ static int roots(double time, N_Vector x, double *value, void *context) {
   return stepper_roots(s->system, time, NV_DATA_S(x), value) ? 0 : -1;
 }
 
-/* Failures come back as flags; CVODE would also write them to standard error. */
-static void ignore_message(int code, const char *module, const char *function, char *message,
-                           void *context) {
-  (void)code, (void)module, (void)function, (void)message, (void)context;
-}
-
 /* ---- creation ----------------------------------------------------------------------------- */
 
+/* Failures come back as flags, and are not written to standard error. */
 static bool set_up(struct stepper *s) {
   int direction[SYSTEM_ROOTS_MAX], count = s->system->spec->cell_count * ROOTS_PER_CELL + 1;
   for (int i = 0; i < count; i++) {
     direction[i] = -1;
   }
   s->cvode = CVodeCreate(CV_BDF, s->context);
-  return s->cvode && CVodeSetErrHandlerFn(s->cvode, ignore_message, NULL) == CV_SUCCESS &&
+  return s->cvode && CVodeSetErrFile(s->cvode, NULL) == CV_SUCCESS &&
          CVodeInit(s->cvode, derivative, 0.0, s->x) == CV_SUCCESS &&
          CVodeSetUserData(s->cvode, s) == CV_SUCCESS &&
          CVodeSVtolerances(s->cvode, s->system->spec->tolerance, s->tolerance) == CV_SUCCESS &&

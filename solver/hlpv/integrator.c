@@ -69,12 +69,6 @@ static int roots(double time, N_Vector x, double *value, void *context) {
   return 0;
 }
 
-/* Failures come back as flags; CVODE would also write them to standard error. */
-static void ignore_message(int code, const char *module, const char *function, char *message,
-                           void *context) {
-  (void)code, (void)module, (void)function, (void)message, (void)context;
-}
-
 /* ---- creation ----------------------------------------------------------------------------- */
 
 static bool set_roots(struct integrator *in) {
@@ -88,9 +82,10 @@ static bool set_roots(struct integrator *in) {
                         CVodeSetNoInactiveRootWarn(in->cvode) == CV_SUCCESS);
 }
 
+/* Failures come back as flags, and are not written to standard error. */
 static bool set_up(struct integrator *in) {
   in->cvode = CVodeCreate(CV_ADAMS, in->context);
-  return in->cvode && CVodeSetErrHandlerFn(in->cvode, ignore_message, NULL) == CV_SUCCESS &&
+  return in->cvode && CVodeSetErrFile(in->cvode, NULL) == CV_SUCCESS &&
          CVodeInit(in->cvode, derivative, 0.0, in->x) == CV_SUCCESS &&
          CVodeSetUserData(in->cvode, in) == CV_SUCCESS &&
          CVodeSVtolerances(in->cvode, in->spec->tolerance, in->tolerance) == CV_SUCCESS &&

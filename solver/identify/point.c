@@ -4,14 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "solver/base/numbers.h"
+
 enum { N = HLPV_STATES };
 
 /* ---- creation ----------------------------------------------------------------------------- */
-
-static int compare(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
 
 static bool belongs(const struct trials *trials, const struct step *step, int mode,
                     double set_point, bool all) {
@@ -29,7 +26,7 @@ static void gather_times(const struct trials *trials, struct point *point) {
       point->time[n++] = time[k] - time[0];
     }
   }
-  qsort(point->time, n, sizeof *point->time, compare);
+  qsort(point->time, n, sizeof *point->time, numbers_compare);
   point->time_count = 0;
   for (size_t i = 0; i < n; i++) {
     if (i == 0 || point->time[i] - point->time[point->time_count - 1] > 1e-9) {

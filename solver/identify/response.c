@@ -93,22 +93,17 @@ static int slopes(int count, double time, N_Vector y, N_Vector rate, N_Vector *s
   return 0;
 }
 
-/* Failures come back as flags; CVODES would also write them to standard error. */
-static void ignore_message(int code, const char *module, const char *function, char *message,
-                           void *context) {
-  (void)code, (void)module, (void)function, (void)message, (void)context;
-}
-
 /* ---- creation ----------------------------------------------------------------------------- */
 
-/* Sensitivities follow the steps of the states: a least-squares fit needs them less exactly. */
+/* Sensitivities follow the steps of the states: a least-squares fit needs them less exactly.
+ * Failures come back as flags, and are not written to standard error. */
 static bool set_up(struct response *r, int method) {
   double absolute[RESPONSE_PARAMETERS];
   for (int j = 0; j < r->parameters; j++) {
     absolute[j] = r->tolerance;
   }
   void *cvode = r->method[method] = CVodeCreate(method == 0 ? CV_BDF : CV_ADAMS, r->context);
-  return cvode && CVodeSetErrHandlerFn(cvode, ignore_message, NULL) == CV_SUCCESS &&
+  return cvode && CVodeSetErrFile(cvode, NULL) == CV_SUCCESS &&
          CVodeInit(cvode, derivative, 0.0, r->y) == CV_SUCCESS &&
          CVodeSetUserData(cvode, r) == CV_SUCCESS &&
          CVodeSStolerances(cvode, r->tolerance, r->tolerance) == CV_SUCCESS &&

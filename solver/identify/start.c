@@ -3,12 +3,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* ---- noise -------------------------------------------------------------------------------- */
+#include "solver/base/numbers.h"
 
-static int compare(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
+/* ---- noise -------------------------------------------------------------------------------- */
 
 /* Standard deviation of a column; difference: room for its second differences. Those of white noise
  * have a variance of 6, and half of a normal distribution lies within 0.6745 of its deviation. */
@@ -21,7 +18,7 @@ static double column_noise(const double *time, const double *value, size_t count
       difference[n++] = fabs(value[i + 1] - 2.0 * value[i] + value[i - 1]);
     }
   }
-  qsort(difference, n, sizeof *difference, compare);
+  qsort(difference, n, sizeof *difference, numbers_compare);
   return n > 0 ? difference[n / 2] / (0.6745 * sqrt(6.0)) : 0.0;
 }
 

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "solver/base/numbers.h"
 #include "solver/base/text.h"
 
 /* Everything on the way from the trials to the steps. */
@@ -26,11 +27,6 @@ static enum status no_memory(const struct parting *p) {
   return error_set(p->error, STATUS_NO_MEMORY, NULL, "no memory for the steps");
 }
 
-static int compare(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* ---- ranges, modes and set-points --------------------------------------------------------- */
 
 /* A column of all trials, sorted, owned by the caller. */
@@ -47,7 +43,7 @@ static double *sorted_column(const struct trials *trials, size_t offset, size_t 
     n += trial->count;
   }
   if (value) {
-    qsort(value, *count, sizeof *value, compare);
+    qsort(value, *count, sizeof *value, numbers_compare);
   }
   return value;
 }
@@ -72,7 +68,7 @@ static enum status find_levels(struct parting *p, const double *h, size_t count)
       level[place] = 0.5 * (h[i] + h[i - 1]);
     }
   }
-  qsort(level, (size_t)wanted, sizeof *level, compare);
+  qsort(level, (size_t)wanted, sizeof *level, numbers_compare);
   if (wanted > 0 && !(width[wanted - 1] > moving * p->steps->range[0])) {
     return error_set(p->error, STATUS_INVALID, "/modes",
                      "no jump of the elongation parts the %d modes: the widest empty stretches are "
