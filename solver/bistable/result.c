@@ -7,6 +7,7 @@
 #include "solver/bistable/computed_law.h"
 #include "solver/bistable/simulate.h"
 #include "solver/job/json.h"
+#include "solver/post/result_hlpv.h"
 
 #define DEGREES (180.0 / 3.14159265358979323846)
 
@@ -309,21 +310,6 @@ json_t *bistable_parts(const struct bistable_system *system, const struct bistab
   return parts;
 }
 
-static json_t *warnings_array(const struct bistable_trajectory *t) {
-  json_t *warnings = json_array();
-  for (int i = 0; i < t->warning_count; i++) {
-    json_array_append_new(warnings, json_string(t->warning[i]));
-  }
-  return warnings;
-}
-
-static json_t *statistics_object(const struct bistable_trajectory *t, double wall_s, double cpu_s) {
-  return json_pack("{s:I, s:I, s:I, s:f, s:f, s:f}", "steps", (json_int_t)t->counts.steps,
-                   "evaluations", (json_int_t)t->counts.evaluations, "restarts",
-                   (json_int_t)t->counts.restarts, "wall_s", wall_s, "cpu_s", cpu_s,
-                   "peak_memory_MB", clock_peak_memory_MB());
-}
-
 enum status result_bistable(const struct job_spec *spec,
                             const struct result_bistable_options *options, json_t **document,
                             enum status *ending, struct error *error) {
@@ -357,8 +343,9 @@ enum status result_bistable(const struct job_spec *spec,
   *document = json_pack("{s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:[], s:o, s:{s:s, s:s}}", "status",
                         good ? "succeeded" : "diverged", "reason", good ? "" : status_word(*ending),
                         "message", good ? "" : end.message, "kind", "bistable", "name", spec->name,
-                        "metrics", bistable_metrics(&system, &t), "warnings", warnings_array(&t),
-                        "artifacts", "statistics", statistics_object(&t, wall_s, cpu_s),
+                        "metrics", bistable_metrics(&system, &t), "warnings",
+                        json_texts(t.warning[0], sizeof t.warning[0], t.warning_count), "artifacts",
+                        "statistics", result_hlpv_statistics(&t.counts, wall_s, cpu_s),
                         "provenance", "version", PNEULAB_VERSION, "spec_hash", spec->hash);
   if (*document) {
     json_object_update_new(*document, bistable_parts(&system, &t));

@@ -252,6 +252,7 @@ static enum status advance(struct simulation *s, bool passed[SYSTEM_ROOTS_MAX],
 
 static enum status run_piece(struct simulation *s, double stop, struct error *error) {
   enum status status = stepper_restart(s->stepper, s->time, s->x, stop, error);
+  bool counted = false;
   for (long step = 0; status == STATUS_OK && s->time < stop; step++) {
     bool passed[SYSTEM_ROOTS_MAX], anew = false;
     status = advance(s, passed, error);
@@ -263,13 +264,17 @@ static enum status run_piece(struct simulation *s, double stop, struct error *er
     }
     if (status == STATUS_OK && anew) {
       stepper_count(s->stepper, &s->recorder.out->counts);
+      counted = true;
       status = bistable_add_moment(&s->recorder, s->time, s->x, error);
       if (status == STATUS_OK && s->time < stop) {
         status = stepper_restart(s->stepper, s->time, s->x, stop, error);
+        counted = false;
       }
     }
   }
-  stepper_count(s->stepper, &s->recorder.out->counts);
+  if (!counted) {
+    stepper_count(s->stepper, &s->recorder.out->counts);
+  }
   return status;
 }
 

@@ -242,3 +242,11 @@ void json_set_finite(json_t *object, const char *key, double value) {
     json_object_set_new(object, key, json_real(value));
   }
 }
+
+json_t *json_texts(const char *text, size_t size, int count) {
+  json_t *texts = json_array();
+  for (int i = 0; i < count; i++) {
+    json_array_append_new(texts, json_string(text + (size_t)i * size));
+  }
+  return texts;
+}

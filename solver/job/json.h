@@ -36,6 +36,9 @@ void json_pointer_pop(struct json_pointer *pointer, size_t mark);
 /* Stores a number under `key` of an object unless it is not finite. */
 void json_set_finite(json_t *object, const char *key, double value);
 
+/* `count` texts, each in `size` bytes, as an array of strings; a new reference. */
+json_t *json_texts(const char *text, size_t size, int count);
+
 /* "an object", "a string", ... of a value. Static storage. */
 const char *json_type_phrase(const json_t *value);
 

@@ -118,14 +118,6 @@ static json_t *metrics_object(const struct hlpv_spec *spec, const struct hlpv_tr
   return o;
 }
 
-static json_t *warnings_array(const struct hlpv_trajectory *t) {
-  json_t *warnings = json_array();
-  for (int i = 0; i < t->warning_count; i++) {
-    json_array_append_new(warnings, json_string(t->warning[i]));
-  }
-  return warnings;
-}
-
 static json_t *polynomial_object(const struct hlpv_polynomial *polynomial) {
   json_t *coefficients = json_array();
   for (int i = 0; i < polynomial->count; i++) {
@@ -165,11 +157,11 @@ static json_t *model_object(const struct hlpv_spec *spec) {
                    "rest_length_m", spec->rest_length, "modes", modes, "transitions", transitions);
 }
 
-static json_t *statistics_object(const struct hlpv_trajectory *t, double wall_s, double cpu_s) {
-  return json_pack("{s:I, s:I, s:I, s:f, s:f, s:f}", "steps", (json_int_t)t->counts.steps,
-                   "evaluations", (json_int_t)t->counts.evaluations, "restarts",
-                   (json_int_t)t->counts.restarts, "wall_s", wall_s, "cpu_s", cpu_s,
-                   "peak_memory_MB", clock_peak_memory_MB());
+json_t *result_hlpv_statistics(const struct hlpv_counts *counts, double wall_s, double cpu_s) {
+  return json_pack("{s:I, s:I, s:I, s:f, s:f, s:f}", "steps", (json_int_t)counts->steps,
+                   "evaluations", (json_int_t)counts->evaluations, "restarts",
+                   (json_int_t)counts->restarts, "wall_s", wall_s, "cpu_s", cpu_s, "peak_memory_MB",
+                   clock_peak_memory_MB());
 }
 
 /* What is over time, and the model. */
@@ -215,9 +207,11 @@ enum status result_hlpv(const struct job_spec *spec, const struct result_hlpv_op
   if (*document && !options->brief) {
     add_course(*document, spec->hlpv, &t);
   }
-  json_t *rest = json_pack("{s:o, s:[], s:o, s:{s:s, s:s}}", "warnings", warnings_array(&t),
-                           "artifacts", "statistics", statistics_object(&t, wall_s, cpu_s),
-                           "provenance", "version", PNEULAB_VERSION, "spec_hash", spec->hash);
+  json_t *rest =
+      json_pack("{s:o, s:[], s:o, s:{s:s, s:s}}", "warnings",
+                json_texts(t.warning[0], sizeof t.warning[0], t.warning_count), "artifacts",
+                "statistics", result_hlpv_statistics(&t.counts, wall_s, cpu_s), "provenance",
+                "version", PNEULAB_VERSION, "spec_hash", spec->hash);
   if (*document && json_object_update(*document, rest) != 0) {
     json_decref(*document);
     *document = NULL;

@@ -4,6 +4,7 @@
 
 #include <jansson.h>
 #include <stdio.h>
+#include "solver/hlpv/trajectory.h"
 #include "solver/job/spec.h"
 
 struct result_hlpv_options {
@@ -16,5 +17,8 @@ struct result_hlpv_options {
  * one that stopped early gives a document too. STATUS_NO_MEMORY, INTERNAL. */
 enum status result_hlpv(const struct job_spec *spec, const struct result_hlpv_options *options,
                         json_t **document, enum status *ending, struct error *error);
+
+/* The "statistics" of an integration that took wall_s and cpu_s seconds, a new reference. */
+json_t *result_hlpv_statistics(const struct hlpv_counts *counts, double wall_s, double cpu_s);
 
 #endif
