@@ -103,6 +103,10 @@ enum status reader_set_point(const struct reader *reader, const json_t *value, c
 enum status reader_reference(const struct reader *reader, const json_t *value, const char *pointer,
                              struct hlpv_input *input);
 
+/* Whether a motion of `end` seconds, sampled at `rate` in Hz from 0 on, has at most `most` samples;
+ * else STATUS_INVALID at /sample_rate with a rate that keeps to it. */
+enum status reader_check_samples(const struct reader *reader, double end, double rate, int most);
+
 struct hlpv_spec;
 
 /* Fills spec->control from the value of the key, and spec->input with what stands for it at the

@@ -319,7 +319,6 @@ static void read_plate_and_load(const struct reader *reader, const json_t *docum
 }
 
 static enum status check_whole(const struct reader *reader, const struct bistable_spec *spec) {
-  double samples = spec->end * spec->sample_rate + 1.0;
   for (int a = 0; a < spec->actuator_count; a++) {
     const struct supply_spec *supply = &spec->actuator[a].supply;
     if (supply->model == SUPPLY_CHAMBER && spec->initial_pressure <= -supply->atmosphere) {
@@ -331,14 +330,7 @@ static enum status check_whole(const struct reader *reader, const struct bistabl
     return error_set(reader->error, STATUS_INVALID, "/load/gap",
                      "a load at a distance from the plate would fall: give no gap, or no gravity");
   }
-  if (samples > BISTABLE_SAMPLES_MAX) {
-    return error_set(reader->error, STATUS_INVALID, "/sample_rate",
-                     "%.6g Hz over %.6g s make %.0f samples; at most %d are allowed, which \"%.4g "
-                     "Hz\" keeps to",
-                     spec->sample_rate, spec->end, samples, BISTABLE_SAMPLES_MAX,
-                     floor((BISTABLE_SAMPLES_MAX - 1) / spec->end * 1e3) / 1e3);
-  }
-  return STATUS_OK;
+  return reader_check_samples(reader, spec->end, spec->sample_rate, BISTABLE_SAMPLES_MAX);
 }
 
 enum status reader_bistable(const struct reader *reader, const json_t *document,

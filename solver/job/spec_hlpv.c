@@ -248,18 +248,6 @@ static enum status check_start(const struct reader *reader, const struct hlpv_sp
   return STATUS_OK;
 }
 
-static enum status check_samples(const struct reader *reader, const struct hlpv_spec *spec) {
-  double samples = spec->end * spec->sample_rate + 1.0;
-  if (samples <= HLPV_SAMPLES_MAX) {
-    return STATUS_OK;
-  }
-  return error_set(reader->error, STATUS_INVALID, "/sample_rate",
-                   "%.6g Hz over %.6g s make %.0f samples; at most %d are allowed, which \"%.4g "
-                   "Hz\" keeps to",
-                   spec->sample_rate, spec->end, samples, HLPV_SAMPLES_MAX,
-                   floor((HLPV_SAMPLES_MAX - 1) / spec->end * 1e3) / 1e3);
-}
-
 /* The set-point, or what makes it. */
 static enum status read_drive(const struct reader *reader, const json_t *document,
                               struct hlpv_spec *spec) {
@@ -303,7 +291,7 @@ enum status reader_hlpv(const struct reader *reader, const json_t *document, str
     status = read_drive(reader, document, spec);
   }
   if (status == STATUS_OK) {
-    status = check_samples(reader, spec);
+    status = reader_check_samples(reader, spec->end, spec->sample_rate, HLPV_SAMPLES_MAX);
   }
   return status == STATUS_OK ? check_start(reader, spec) : status;
 }

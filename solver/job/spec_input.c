@@ -186,3 +186,19 @@ enum status reader_set_point(const struct reader *reader, const json_t *value, c
   return data ? read_data(reader, value, pointer, input)
               : read_given(reader, value, pointer, &pressure, input);
 }
+
+/* The largest number of four digits that is not above a positive one. */
+static double round_down(double value) {
+  double digit = pow(10.0, floor(log10(value)) - 3.0);
+  return floor(value / digit) * digit;
+}
+
+enum status reader_check_samples(const struct reader *reader, double end, double rate, int most) {
+  double samples = end * rate + 1.0;
+  return samples <= most
+             ? STATUS_OK
+             : error_set(reader->error, STATUS_INVALID, "/sample_rate",
+                         "%.6g Hz over %.6g s make %.0f samples; at most %d are allowed, which "
+                         "\"%.4g Hz\" keeps to",
+                         rate, end, samples, most, round_down((most - 1) / end));
+}

@@ -238,6 +238,10 @@ static const struct {
      "/input/data/file", ""},
     {NULL, NULL, NULL, "\"input\": {\"hold\": [[\"0 s\", \"1 kPa\"]]}, \"end\": \"1 h\"",
      "/sample_rate", "at most 25000"},
+    /* 24999 intervals of 15 s are 1666.6 Hz. */
+    {NULL, NULL, NULL,
+     "\"input\": {\"hold\": [[\"0 s\", \"1 kPa\"]]}, \"end\": \"15 s\", \"sample_rate\": \"2 kHz\"",
+     "/sample_rate", "\"1666 Hz\" keeps to"},
     {NULL, NULL, NULL, "\"input\": {\"hold\": [[\"0 s\", \"1 kPa\"]]}, \"end\": \"-1 s\"", "/end",
      "at least"},
 };
