@@ -87,10 +87,16 @@ static enum status check_times(const struct gathering *g, const struct trial *tr
 static enum status add_trial(struct gathering *g, const char *name, const char *pointer,
                              double *const *column, const int *line, size_t from, size_t to) {
   struct trials *trials = g->trials;
+  if (trials->count == TRIALS_MAX) {
+    return error_set(g->error, STATUS_TOO_LARGE, pointer,
+                     "line %d of the table: here begins one trial more than the %d that are "
+                     "allowed: is \"trial\" another column? It numbers stretches of rows, for "
+                     "example 1, 1, 1, 2, 2, 2",
+                     line[from], TRIALS_MAX);
+  }
   if (trials->count == g->room) {
     size_t room = g->room ? 2 * g->room : 64;
-    struct trial *grown =
-        room <= 2 * TRIALS_MAX ? realloc(trials->trial, room * sizeof *grown) : NULL;
+    struct trial *grown = realloc(trials->trial, room * sizeof *grown);
     if (!grown) {
       return no_memory(g->error);
     }
@@ -249,7 +255,7 @@ static void widen(double range[2], const double *value, size_t count) {
 
 /* Refuses units that cannot be meant. */
 static enum status check_units(const struct gathering *g) {
-  double h[2] = {INFINITY, -INFINITY}, u[2] = {0.0, 0.0}, p[2] = {0.0, 0.0};
+  double h[2] = {INFINITY, -INFINITY}, u[2] = {0.0, 0.0}, p[2] = {INFINITY, -INFINITY};
   for (size_t i = 0; i < g->trials->count; i++) {
     const struct trial *trial = &g->trials->trial[i];
     widen(h, trial->h, trial->count);
@@ -273,6 +279,12 @@ static enum status check_units(const struct gathering *g) {
                      "another unit (1 psi = 6.895 kPa)?",
                      1e-3 * pressure, 1e-3 * set);
   }
+  if (!(p[1] > p[0])) {
+    return error_set(g->error, STATUS_INVALID, "/columns/pressure/name",
+                     "the pressure is %.6g kPa in all rows: what moves cannot be told without its "
+                     "course; is it another column?",
+                     1e-3 * p[0]);
+  }
   return STATUS_OK;
 }
 
@@ -286,18 +298,27 @@ static double main_set_point(const struct trial *trial) {
 }
 
 /* Takes the last trials of each set-point, as many as the share rounds to but not all. */
-static void hold_share(struct trials *trials, double share) {
+static enum status hold_share(struct trials *trials, double share, struct error *error) {
+  double *set_point = malloc(trials->count * sizeof *set_point);
+  if (!set_point) {
+    return no_memory(error);
+  }
+  for (size_t i = 0; i < trials->count; i++) {
+    set_point[i] = main_set_point(&trials->trial[i]);
+  }
   for (size_t i = 0; i < trials->count; i++) {
     size_t before = 0, same = 0;
-    double u = main_set_point(&trials->trial[i]);
+    double u = set_point[i];
     for (size_t k = 0; k < trials->count; k++) {
-      bool equal = fabs(main_set_point(&trials->trial[k]) - u) <= 1e-6 * fabs(u);
+      bool equal = fabs(set_point[k] - u) <= 1e-6 * fabs(u);
       same += equal;
       before += equal && k < i;
     }
     size_t out = (size_t)lround(share * (double)same);
     trials->trial[i].held_out = before >= same - (out < same ? out : same - 1);
   }
+  free(set_point);
+  return STATUS_OK;
 }
 
 static enum status hold_named(const struct gathering *g, const json_t *names) {
@@ -337,7 +358,7 @@ enum status trials_read(const json_t *document, const struct identify_spec *spec
   if (status == STATUS_OK && json_is_array(held_out)) {
     status = hold_named(&g, held_out);
   } else if (status == STATUS_OK) {
-    hold_share(trials, spec->held_out_share);
+    status = hold_share(trials, spec->held_out_share, error);
   }
   size_t left = 0;
   for (size_t i = 0; i < trials->count; i++) {

@@ -29,8 +29,9 @@ struct trials {
  * table_read refuses; names of columns that say the opposite of what they are used for; rows of a
  * trial that stand apart; times that do not rise; fewer than TRIAL_ROWS_MIN rows; elongations,
  * pressures and times of another unit (ranges of h beyond 1 um to 10 m, of pressures that do not go
- * with the set-points, intervals over 60 s); names in held_out that no trial has; no trial left.
- * STATUS_TOO_LARGE, NO_MEMORY. */
+ * with the set-points, intervals over 60 s); a pressure that never changes; names in held_out that
+ * no trial has; no trial left.
+ * STATUS_TOO_LARGE for more than TRIALS_MAX trials or what table_read calls so; NO_MEMORY. */
 enum status trials_read(const json_t *document, const struct identify_spec *spec,
                         struct trials *trials, struct error *error);
 void trials_release(struct trials *trials);

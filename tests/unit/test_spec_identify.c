@@ -217,6 +217,48 @@ START_TEST(a_trial_without_a_step_is_refused) {
 }
 END_TEST
 
+START_TEST(a_pressure_without_a_course_is_refused) {
+  char text[TEXT], *at = text;
+  struct job_spec spec;
+  struct error error = {.status = STATUS_OK};
+  at += sprintf(at, "{\"kind\":\"identify\",%s,%s,\"data\":{\"csv\":\"n,t,u,h,p\\n", columns,
+                one_mode);
+  for (int i = 0; i < 20; i++) {
+    at += sprintf(at, "1,%d,20,%d,20\\n", i, i);
+  }
+  snprintf(at, 10, "\"}}");
+  ck_assert_int_eq(job_spec_read(text, strlen(text), &spec, &error), STATUS_INVALID);
+  ck_assert_str_eq(error.pointer, "/columns/pressure/name");
+  ck_assert_ptr_nonnull(strstr(error.message, "20 kPa in all rows"));
+}
+END_TEST
+
+/* As many as are allowed in ten tables, and one more: nearly all the text that a job may have. */
+START_TEST(too_many_trials_are_refused) {
+  enum { TABLES = 10, SIZE = 1 << 20 };
+  char *text = malloc(SIZE), *at = text;
+  struct job_spec spec;
+  struct error error = {.status = STATUS_OK};
+  at += sprintf(at, "{\"kind\":\"identify\",%s,%s,\"tables\":[", columns, one_mode);
+  for (int table = 0; table <= TABLES; table++) {
+    int rows = table < TABLES ? TRIALS_MAX / TABLES * TRIAL_ROWS_MIN : TRIAL_ROWS_MIN;
+    at +=
+        sprintf(at, "%s{\"name\":\"%d\",\"data\":{\"csv\":\"n,t,u,h,p\\n", table ? "," : "", table);
+    for (int row = 0; row < rows; row++) {
+      at += sprintf(at, "%d,%d,1,1,1\\n", row / TRIAL_ROWS_MIN, row % TRIAL_ROWS_MIN);
+    }
+    at += sprintf(at, "\"}}");
+  }
+  at += sprintf(at, "]}");
+  ck_assert_int_lt(at - text, SIZE);
+  ck_assert_int_eq(job_spec_read(text, strlen(text), &spec, &error), STATUS_TOO_LARGE);
+  ck_assert_str_eq(error.pointer, "/tables/10/data/csv");
+  ck_assert_msg(strstr(error.message, "than the 10000 that are allowed") != NULL, "%s",
+                error.message);
+  free(text);
+}
+END_TEST
+
 /* Two modes by the jump in the data; rows in transit belong to none. */
 START_TEST(jumps_part_the_modes) {
   char text[TEXT], *at = text;
@@ -309,6 +351,8 @@ int main(void) {
                       sizeof misuses / sizeof *misuses);
   tcase_add_test(tcase, modes_without_a_jump_or_a_step_are_refused);
   tcase_add_test(tcase, a_trial_without_a_step_is_refused);
+  tcase_add_test(tcase, a_pressure_without_a_course_is_refused);
+  tcase_add_test(tcase, too_many_trials_are_refused);
   tcase_add_test(tcase, jumps_part_the_modes);
   tcase_add_test(tcase, several_tables_are_several_trials);
   suite_add_tcase(suite, tcase);
