@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "solver/base/text.h"
+#include "solver/job/bistable.h"
 #include "solver/job/hlpv.h"
 #include "solver/job/json.h"
 #include "solver/job/reader.h"
@@ -204,6 +205,13 @@ static enum status check_stations(const struct study_ranking *ranking, const str
   return STATUS_OK;
 }
 
+/* Samples of a motion; those of a body, one for each step of its load, do not count. */
+static double count_samples(const struct job_spec *spec) {
+  return spec->hlpv       ? spec->hlpv->end * spec->hlpv->sample_rate + 1.0
+         : spec->bistable ? spec->bistable->end * spec->bistable->sample_rate + 1.0
+                          : 0.0;
+}
+
 /* Checks the member as a job of its own and takes from it what the study has to know; adds to
  * *samples how many it will have. */
 static enum status take_member(const struct job_reader *reader, const struct draft *draft,
@@ -216,7 +224,7 @@ static enum status take_member(const struct job_reader *reader, const struct dra
   }
   memcpy(member->hash, spec.hash, sizeof member->hash);
   member->timeout_s = spec.timeout_s;
-  *samples += spec.hlpv ? spec.hlpv->end * spec.hlpv->sample_rate + 1.0 : 0.0;
+  *samples += count_samples(&spec);
   status = check_stations(ranking, draft, &spec, error);
   bool body = spec.kind == JOB_RESPONSE;
   job_spec_release(&spec);
@@ -335,13 +343,14 @@ static enum status read_ranking(const struct reader *reader, const json_t *docum
 
 /* ---- all of it ---------------------------------------------------------------------------- */
 
-static enum status check_samples(double samples, struct error *error) {
+/* samples: of the first `count` members together. */
+static enum status check_samples(double samples, size_t count, struct error *error) {
   return samples <= STUDY_SAMPLES_MAX
              ? STATUS_OK
              : error_set(error, STATUS_TOO_LARGE, "/keep",
-                         "the members have %.0f samples together; at most %d are kept: keep "
-                         "\"metrics\", or lower the sample rate of the base",
-                         samples, STUDY_SAMPLES_MAX);
+                         "the first %zu members have %.0f samples together; a study keeps at most "
+                         "%d: keep \"metrics\", or lower the sample rate of the base",
+                         count, samples, STUDY_SAMPLES_MAX);
 }
 
 enum status study_expand(const struct job_reader *job_reader, const json_t *document, bool keep,
@@ -371,10 +380,12 @@ enum status study_expand(const struct job_reader *job_reader, const json_t *docu
     if (status == STATUS_OK) {
       relate(study, &index, i);
     }
+    if (status == STATUS_OK && study->keep_samples) {
+      status = check_samples(samples, i + 1, error);
+    }
   }
   free(index.place);
-  return status == STATUS_OK && study->light && study->keep_samples ? check_samples(samples, error)
-                                                                    : status;
+  return status;
 }
 
 enum status study_read_member(const struct job_reader *reader, const json_t *document, size_t index,

@@ -9,7 +9,7 @@
 enum { STUDY_MEMBERS_MAX = 1000, STUDY_LIGHT_MAX = 10000, STATIONS_MAX = 50 };
 
 /* Most text that the members of a study may have together, in bytes; of light ones, whose documents
- * are not held at the same time; and most samples that a study of light ones may keep. */
+ * are not held at the same time; and most samples of motions that a study may keep. */
 enum { STUDY_TEXT_MAX = 16 << 20, STUDY_LIGHT_TEXT_MAX = 64 << 20, STUDY_SAMPLES_MAX = 100000 };
 
 /* One member. Members with equal hashes are the same body under the same load; so are, but for the

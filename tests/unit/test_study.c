@@ -230,7 +230,32 @@ START_TEST(too_many_hybrid_models_are_refused) {
   write_grid(text, sizeof text, 30, 30, ",\"keep\":\"samples\"");
   ck_assert_int_eq(job_reader_read(reader, text, strlen(text), &spec, &error), STATUS_TOO_LARGE);
   ck_assert_str_eq(error.pointer, "/keep");
-  ck_assert_msg(strstr(error.message, "108900 samples") != NULL, "%s", error.message);
+  /* 121 samples each: 826 members have 99946. */
+  ck_assert_msg(strstr(error.message, "first 827 members have 100067 samples") != NULL, "%s",
+                error.message);
+}
+END_TEST
+
+/* Members of a kind that takes a process each: 10001 samples times ten are too many, too. */
+START_TEST(samples_of_motions_are_limited) {
+  static const char job[] =
+      "{\"kind\":\"study\",\"base\":{\"kind\":\"bistable\",\"laws\":{\"a\":{\"per\":\"mm\","
+      "\"coefficients\":[\"0 N\",\"5 N\"],\"area\":\"8 cm2\"}},\"actuators\":[{\"cells\":[{"
+      "\"law\":\"a\",\"mass\":\"10 g\"}]}],\"plate\":{\"mass\":\"30 g\"},\"input\":{\"hold\":[["
+      "\"0 s\",\"10 kPa\"]]},\"end\":\"10 s\",\"sample_rate\":\"1 kHz\"},\"sampling\":\"grid\","
+      "\"keep\":\"%s\",\"parameters\":[{\"pointer\":\"/plate/mass\",\"values\":[\"1 g\",\"2 g\","
+      "\"3 g\",\"4 g\",\"5 g\",\"6 g\",\"7 g\",\"8 g\",\"9 g\",\"10 g\"]}]}";
+  char text[2000];
+  struct job_spec spec;
+  struct error error = {.status = STATUS_OK};
+  snprintf(text, sizeof text, job, "samples");
+  ck_assert_int_eq(job_reader_read(reader, text, strlen(text), &spec, &error), STATUS_TOO_LARGE);
+  ck_assert_str_eq(error.pointer, "/keep");
+  ck_assert_msg(strstr(error.message, "100010 samples") != NULL, "%s", error.message);
+  snprintf(text, sizeof text, job, "metrics");
+  ck_assert_msg(job_reader_read(reader, text, strlen(text), &spec, &error) == STATUS_OK, "%s: %s",
+                error.pointer, error.message);
+  job_spec_release(&spec);
 }
 END_TEST
 
@@ -318,6 +343,7 @@ int main(void) {
   tcase_add_test(tcase, rankings_are_read);
   tcase_add_test(tcase, hybrid_models_may_be_many);
   tcase_add_test(tcase, too_many_hybrid_models_are_refused);
+  tcase_add_test(tcase, samples_of_motions_are_limited);
   tcase_add_loop_test(tcase, bad_studies_are_refused, 0, sizeof bad / sizeof *bad);
   suite_add_tcase(suite, tcase);
   return suite_run(suite);
