@@ -89,12 +89,18 @@ static void add_motion(const struct bistable_system *system, const struct bistab
   add_metrics(document, system, t);
 }
 
+/* When the time limit of the job is reached, whose paths have taken what the document says. */
+static double deadline(const struct job_spec *spec, const json_t *document) {
+  const json_t *taken = json_object_get(json_object_get(document, "statistics"), "wall_s");
+  return spec->timeout_s > 0.0 ? clock_wall_s() + spec->timeout_s - json_number_value(taken) : 0.0;
+}
+
 enum status bistable_dynamics(const struct job_spec *spec,
                               const struct result_bistable_options *options, json_t *document,
                               struct error *error) {
   struct bistable_spec *bistable = spec->bistable;
   struct bistable_options simulation = {
-      .deadline_s = spec->timeout_s > 0.0 ? clock_wall_s() + spec->timeout_s : 0.0,
+      .deadline_s = deadline(spec, document),
       .cancelled = options->cancelled,
   };
   struct bistable_trajectory t = {0};

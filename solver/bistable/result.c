@@ -310,6 +310,17 @@ json_t *bistable_parts(const struct bistable_system *system, const struct bistab
   return parts;
 }
 
+/* Takes over what a snap job that was solved first has come to: its metrics, and its warnings,
+ * which are about the law of the cells. */
+static void add_snap(json_t *document, const json_t *computed) {
+  json_t *warnings = json_object_get(document, "warnings"), *warning;
+  size_t index;
+  json_object_set(document, "snap", json_object_get(computed, "metrics"));
+  json_array_foreach(json_object_get(computed, "warnings"), index, warning) {
+    json_array_append_new(warnings, json_sprintf("snap: %s", json_string_value(warning)));
+  }
+}
+
 enum status result_bistable(const struct job_spec *spec,
                             const struct result_bistable_options *options, json_t **document,
                             enum status *ending, struct error *error) {
@@ -352,9 +363,10 @@ enum status result_bistable(const struct job_spec *spec,
   }
   if (!*document) {
     status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the result document");
+    goto done;
   }
   if (computed) {
-    json_object_set(*document, "snap", json_object_get(computed, "metrics"));
+    add_snap(*document, computed);
   }
 done:
   json_decref(computed);
