@@ -7,8 +7,6 @@
 #include "solver/job/reader.h"
 #include "solver/job/snap.h"
 
-enum { QUOTED_MAX = 60 };
-
 static bool has_word(const json_t *object, const char *key, const char *word) {
   const char *given = json_string_value(json_object_get(object, key));
   return given && strcmp(given, word) == 0;

@@ -14,6 +14,7 @@ struct snap_body {
   void *self;
   int size, values; /* of x and u of a state */
   double length;    /* as moulded, along the axis, m */
+  double skin;      /* its thickness, m; 0 of a shell */
   struct continuation_options (*options)(const void *self);
   enum status (*follow)(void *self, const struct axi_ramp *ramp,
                         const struct continuation_options *options, int direction,
@@ -29,10 +30,10 @@ struct snap_body {
   int (*inverted)(const void *self, const double *u);
   /* Largest principal logarithmic strain of the PET, by its size. */
   double (*pet_strain)(const void *self, const double *u);
-  /* NULL of a shell. count[n] = negative pivots of the second variation with n waves, 0 <= n <=
-   * last. STATUS_OK, INVERTED or NO_MEMORY. */
-  enum status (*harmonics)(void *self, const struct axi_state *state, int last, int *count,
-                           struct error *error);
+  /* NULL of a shell. count[n - first] = negative pivots of the second variation with n waves, first
+   * <= n <= last. STATUS_OK, INVERTED or NO_MEMORY. */
+  enum status (*harmonics)(void *self, const struct axi_state *state, int first, int last,
+                           int *count, struct error *error);
   /* Regions with their outlines in mm, a new array of objects as results have it. */
   json_t *(*outlines)(const void *self, const double *u);
   void (*destroy)(void *self);

@@ -35,11 +35,14 @@ enum status snap_follow_held(struct snap_study *study, struct error *error) {
   static const double share[2] = {0.75, 0.8};
   const struct snap_spec *spec = study->spec;
   struct axi_state state;
+  study->held = (struct snap_path){.name = "held", .control = SNAP_BY_PRESSURE_HELD};
+  if (spec->extension_at == 0.0) {
+    return STATUS_OK;
+  }
   enum status status = snap_study_copy(study, SNAP_NATURAL, &state, error);
   if (status != STATUS_OK) {
     return status;
   }
-  study->held = (struct snap_path){.name = "held", .control = SNAP_BY_PRESSURE_HELD};
   status = hold(study, &study->held, spec->extension_at, share, &state, error);
   if (status == STATUS_OK) {
     double both = 0.0, square = 0.0;
@@ -92,7 +95,7 @@ static enum status both_ways(struct snap_study *study, struct snap_path *path, d
                            .quiet = true,
                            .share = {share[0], share[1]},
                            .error = error};
-  double step = fmax(fabs(from->force), 0.1 * fabs(pressure) * 1e-4) + 1.0;
+  double step = fabs(from->force) + snap_force_scale(study->spec);
   struct axi_ramp ramp = {.from = {.pressure = pressure, .force = from->force},
                           .to = {.pressure = pressure, .force = from->force + step}};
   snap_body_copy(&study->body, from, state);

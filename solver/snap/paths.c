@@ -11,8 +11,7 @@ static struct snap_path *new_path(struct snap_study *study, const char *name,
   return path;
 }
 
-/* Axial force that is comparable with the pressures of the job. */
-static double force_scale(const struct snap_spec *spec) {
+double snap_force_scale(const struct snap_spec *spec) {
   return spec->pressure_to * M_PI * spec->crest_radius * spec->crest_radius;
 }
 
@@ -58,7 +57,7 @@ static enum status compressed_by_force(struct snap_study *study, struct axi_stat
                            .quiet = true,
                            .share = {0.0, 0.15},
                            .error = error};
-  struct axi_ramp ramp = {.to = {.force = force_scale(study->spec)}};
+  struct axi_ramp ramp = {.to = {.force = snap_force_scale(study->spec)}};
   snap_body_copy(&study->body, &study->state[SNAP_NATURAL], state);
   state->lambda = 0.0;
   enum status status = snap_walk_along(&walk, &ramp, -1, 1, &unloaded, state);
@@ -105,8 +104,10 @@ static bool until_natural(struct snap_walk *walk, const struct axi_state *state,
   struct axial *axial = walk->context;
   const struct axi_state *compressed = &study->state[SNAP_COMPRESSED];
   double energy = state->energy + state->contact_energy;
-  bool back = study->metrics.barrier == study->metrics.barrier;
-  (void)point;
+  bool back = isfinite(study->metrics.barrier);
+  if (point->events & CONTINUATION_START) {
+    *axial = (struct axial){.highest = -INFINITY};
+  }
   if (!back) {
     axial->most = fmax(axial->most, state->force);
     axial->least = fmin(axial->least, state->force);
@@ -121,19 +122,19 @@ static bool until_natural(struct snap_walk *walk, const struct axi_state *state,
   }
   double limit = study->body.length;
   return state->elongation < limit && state->elongation > -limit &&
-         !(back && state->force >= force_scale(study->spec));
+         !(back && state->force >= snap_force_scale(study->spec));
 }
 
 enum status snap_follow_axial(struct snap_study *study, struct error *error) {
   static const double unloaded = 0.0;
   struct axi_state state;
-  struct axial axial = {.highest = -INFINITY};
+  struct axial axial;
   struct snap_walk walk = {.study = study,
                            .go_on = until_natural,
                            .context = &axial,
                            .share = {0.15, 0.35},
                            .error = error};
-  struct axi_ramp ramp = {.to = {.force = force_scale(study->spec)}};
+  struct axi_ramp ramp = {.to = {.force = snap_force_scale(study->spec)}};
   enum status status = snap_study_copy(study, SNAP_COMPRESSED, &state, error);
   if (status != STATUS_OK) {
     return status;
@@ -146,31 +147,44 @@ enum status snap_follow_axial(struct snap_study *study, struct error *error) {
 
 /* ---- by pressure -------------------------------------------------------------------------- */
 
+/* Where folds close, a path may have a limit point behind which the body gives way a little and is
+ * stable again on the same side of its snap. The limit point that counts is the one that asks most
+ * of the pressure (`more` of what is known) before a shell turns. */
+static void note_limit(struct snap_walk *walk, const struct axi_state *state, enum snap_mark mark,
+                       bool more, double *pressure) {
+  struct snap_study *study = walk->study;
+  if (!study->has[mark] || more) {
+    *pressure = state->pressure;
+    walk->status = snap_study_keep(study, mark, state, walk->error);
+  }
+}
+
 static bool until_stretched(struct snap_walk *walk, const struct axi_state *state,
                             const struct continuation_point *point) {
   struct snap_study *study = walk->study;
-  if ((point->events & CONTINUATION_LIMIT) && !study->has[SNAP_TRIGGER] && state->pressure > 0.0) {
-    study->metrics.trigger_pressure = state->pressure;
-    walk->status = snap_study_keep(study, SNAP_TRIGGER, state, walk->error);
-    if (walk->context) {
-      return false;
-    }
+  double *trigger = &study->metrics.trigger_pressure;
+  bool folded = study->body.inverted(study->body.self, state->u) == study->spec->pair_count;
+  if ((point->events & CONTINUATION_LIMIT) && state->pressure > 0.0) {
+    note_limit(walk, state, SNAP_TRIGGER, folded && state->pressure > *trigger, trigger);
+  }
+  if (walk->context && study->has[SNAP_TRIGGER] && (!folded || state->pressure < 0.0)) {
+    return false;
   }
   double limit = 2.0 * study->body.length;
   bool deep = state->pressure < study->spec->vacuum_to && study->has[SNAP_TRIGGER];
   return !(point->events & CONTINUATION_TARGET) && !deep && state->elongation < limit;
 }
 
-/* Up to the first limit point only, where `first` is not NULL. */
-static enum status follow_pressure(struct snap_study *study, bool *first, struct error *error) {
+/* Up to the trigger only, where `only` is not NULL. */
+static enum status follow_pressure(struct snap_study *study, bool *only, struct error *error) {
   static const double full = 1.0;
   struct axi_state state;
   struct snap_walk walk = {.study = study,
                            .go_on = until_stretched,
-                           .context = first,
+                           .context = only,
                            .share = {0.35, 0.55},
                            .error = error,
-                           .quiet = first != NULL};
+                           .quiet = only != NULL};
   struct axi_ramp ramp = {.to = {.pressure = study->spec->pressure_to}};
   enum status status = snap_study_copy(study, SNAP_COMPRESSED, &state, error);
   if (status != STATUS_OK) {
@@ -189,12 +203,17 @@ enum status snap_follow_pressure(struct snap_study *study, struct error *error) 
 static bool until_release(struct snap_walk *walk, const struct axi_state *state,
                           const struct continuation_point *point) {
   struct snap_study *study = walk->study;
+  double *release = &study->metrics.release_pressure;
+  bool turned = study->body.inverted(study->body.self, state->u) > 0;
   if (point->events & CONTINUATION_LIMIT) {
-    study->metrics.release_pressure = state->pressure;
-    walk->status = snap_study_keep(study, SNAP_RELEASE, state, walk->error);
-    return false;
+    note_limit(walk, state, SNAP_RELEASE, !turned && state->pressure < *release, release);
   }
-  return !(point->events & CONTINUATION_TARGET);
+  bool full = point->events & CONTINUATION_TARGET;
+  if (full && state->negative_free == 0 && !turned) { /* it stands all of the vacuum */
+    study->has[SNAP_RELEASE] = false;
+    *release = NAN;
+  }
+  return !full && !(study->has[SNAP_RELEASE] && (turned || state->pressure >= 0.0));
 }
 
 enum status snap_follow_vacuum(struct snap_study *study, struct error *error) {
@@ -213,6 +232,13 @@ enum status snap_follow_vacuum(struct snap_study *study, struct error *error) {
   walk.path = new_path(study, "vacuum", SNAP_BY_PRESSURE);
   status = snap_walk_along(&walk, &ramp, 1, 1, &full, &state);
   axi_state_destroy(&state);
+  if ((status == STATUS_STEP_MINIMUM || status == STATUS_DIVERGED) && study->has[SNAP_RELEASE]) {
+    snap_study_warn(study,
+                    "the path under vacuum is lost behind its limit point at %.4g kPa: the body "
+                    "may have to be brought lower to return",
+                    1e-3 * study->metrics.release_pressure);
+    status = STATUS_OK;
+  }
   return status;
 }
 
@@ -221,6 +247,9 @@ static bool until_full(struct snap_walk *walk, const struct axi_state *state,
   struct snap_study *study = walk->study;
   const struct snap_spec *spec = study->spec;
   const double *near = walk->context; /* the pressure where the body has snapped */
+  if ((point->events & CONTINUATION_START) && spec->extension_at == 0.0) {
+    study->metrics.stretched = state->elongation;
+  }
   if (point->events & CONTINUATION_TARGET) {
     if (fabs(state->pressure - *near) <= 1e-9 * *near) {
       const struct axi_state *trigger = &study->state[SNAP_TRIGGER];

@@ -6,9 +6,9 @@
 #include "solver/snap/snap_document.h"
 
 static json_t *statistics_object(const struct snap_study *study, double wall_s, double cpu_s) {
-  return json_pack("{s:i, s:I, s:f, s:f, s:f}", "unknowns", study->body.size, "states",
-                   (json_int_t)study->states, "wall_s", wall_s, "cpu_s", cpu_s, "peak_memory_MB",
-                   clock_peak_memory_MB());
+  return json_pack("{s:i, s:I, s:f, s:f, s:f, s:f}", "unknowns", study->body.size, "states",
+                   (json_int_t)study->states, "skin_mm", 1e3 * study->body.skin, "wall_s", wall_s,
+                   "cpu_s", cpu_s, "peak_memory_MB", clock_peak_memory_MB());
 }
 
 static json_t *document_of(const struct job_spec *job, const struct snap_study *study,

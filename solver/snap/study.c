@@ -132,6 +132,51 @@ static void count_stable(struct snap_study *study) {
   study->metrics.stable_states = count;
 }
 
+static const struct snap_path *path_named(const struct snap_study *study, const char *name) {
+  for (int i = 0; i < study->path_count; i++) {
+    if (strcmp(study->path[i].name, name) == 0 && study->path[i].count > 0) {
+      return &study->path[i];
+    }
+  }
+  return NULL;
+}
+
+/* Whether the path ends at that pressure. */
+static bool ends_at(const struct snap_path *path, double pressure) {
+  return path && fabs(path->point[path->count - 1].pressure - pressure) <= 1e-6 * fabs(pressure);
+}
+
+/* Metrics that are missing although no path failed. */
+static void look_at_ends(struct snap_study *study) {
+  const struct snap_spec *spec = study->spec;
+  const struct snap_path *vacuum = path_named(study, "vacuum");
+  if (!study->has[SNAP_TRIGGER] && ends_at(path_named(study, "pressure"), spec->pressure_to)) {
+    snap_study_warn(study,
+                    "the pressure has no limit point from the compressed state up to %.6g kPa: "
+                    "raise /load/pressure_to to find the trigger",
+                    1e-3 * spec->pressure_to);
+  }
+  if (study->has[SNAP_COMPRESSED] && !study->has[SNAP_RELEASE] &&
+      ends_at(vacuum, spec->vacuum_to)) {
+    snap_study_warn(study,
+                    "the body does not return down to %.6g kPa: lower /load/vacuum_to to find the "
+                    "release pressure",
+                    1e-3 * spec->vacuum_to);
+  }
+  for (int i = 0; i < study->event_count; i++) {
+    const struct snap_event *event = &study->event[i];
+    if (event->type == SNAP_LIMIT_POINT && vacuum && event->path == vacuum->name) {
+      if (event->pressure > study->metrics.release_pressure * (1.0 - 1e-6)) {
+        snap_study_warn(study,
+                        "the stretched body gives way a little at %.4g kPa, before it returns at "
+                        "%.4g kPa: where it does depends on the mesh and on the skin",
+                        1e-3 * event->pressure, 1e-3 * study->metrics.release_pressure);
+      }
+      break;
+    }
+  }
+}
+
 /* Up to which pressure the compressed branch is stable against waves around the circumference. */
 static void look_at_waves(struct snap_study *study) {
   struct snap_metrics *m = &study->metrics;
@@ -141,7 +186,8 @@ static void look_at_waves(struct snap_study *study) {
   }
   for (int i = 0; i < study->waves_count; i++) {
     const struct snap_waves *waves = &study->waves[i];
-    if (strcmp(waves->path, "pressure") != 0 || m->critical_harmonic >= 0) {
+    bool compressed = waves->inverted == study->spec->pair_count;
+    if (strcmp(waves->path, "pressure") != 0 || !compressed) {
       continue;
     }
     for (int n = 1; n <= study->spec->harmonics_to; n++) {
@@ -150,9 +196,7 @@ static void look_at_waves(struct snap_study *study) {
         return;
       }
     }
-    if (!study->has[SNAP_TRIGGER] || waves->elongation <= study->state[SNAP_TRIGGER].elongation) {
-      m->axisymmetric_to = waves->pressure;
-    }
+    m->axisymmetric_to = waves->pressure;
   }
 }
 
@@ -160,20 +204,22 @@ static void look_at_waves(struct snap_study *study) {
 
 typedef enum status follow(struct snap_study *study, struct error *error);
 
-/* Runs a part; remembers the first failure with the name of the part. */
+/* Runs a part; remembers the first failure, or the one that ends the study, with the name of the
+ * part. False when nothing more can be computed. */
 static bool run_part(struct snap_study *study, follow *part, const char *name, enum status *status,
                      struct error *error) {
   struct error local = {.status = STATUS_OK};
   enum status one = part(study, &local);
-  if (one != STATUS_OK && *status == STATUS_OK) {
+  bool final = snap_is_final(one);
+  if (final && *status != STATUS_OK) {
+    snap_study_warn(study, "%.250s", error->message);
+  }
+  if (final || (one != STATUS_OK && *status == STATUS_OK)) {
     *status = error_set(error, one, NULL, "%s: %s", name, local.message);
   } else if (one != STATUS_OK) {
     snap_study_warn(study, "%s: %.200s", name, local.message);
   }
-  if (snap_is_final(one)) {
-    *status = one;
-  }
-  return !snap_is_final(one);
+  return !final;
 }
 
 enum status snap_study_run(struct snap_study *study, struct error *error) {
@@ -190,6 +236,7 @@ enum status snap_study_run(struct snap_study *study, struct error *error) {
     run_part(study, snap_follow_laws, "the law", &status, error);
   }
   look_at_points(study);
+  look_at_ends(study);
   look_at_waves(study);
   count_stable(study);
   return status;

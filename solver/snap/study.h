@@ -46,6 +46,7 @@ struct snap_event {
 struct snap_waves {
   const char *path;
   double pressure, elongation;
+  int inverted;  /* snapping shells that are inside out */
   int *negative; /* from 0 to spec->harmonics_to waves */
 };
 
@@ -53,10 +54,10 @@ struct snap_waves {
 enum snap_mark {
   SNAP_NATURAL,    /* as moulded */
   SNAP_COMPRESSED, /* stable without load, all shells inside out */
-  SNAP_TRIGGER,    /* first limit point of the pressure from there */
+  SNAP_TRIGGER,    /* highest limit point of the pressure from there with all of them so */
   SNAP_SNAPPED,    /* on the stretched branch at the same pressure */
   SNAP_STRETCHED,  /* at the largest pressure */
-  SNAP_RELEASE,    /* limit point under vacuum */
+  SNAP_RELEASE,    /* deepest limit point under vacuum with none of them so */
   SNAP_MARKS
 };
 
@@ -119,17 +120,23 @@ struct snap_walk {
   void *context;
   double share[2]; /* of the job's progress at its start and end */
   bool quiet;      /* no events, no harmonics */
+  bool open;       /* go_on wants more */
   double waves_at; /* arc of the last test of harmonics */
   enum status status;
   struct error *error;
 };
 
 /* Follows the ramp, records every state and calls go_on. state: where to start, then the last one.
- * Returns as axi_follow. */
+ * A path that fails is followed anew in other manners: what the study has learnt on it is then
+ * forgotten, and go_on sees CONTINUATION_START again. Returns as axi_follow; DIVERGED for a path
+ * without an end. */
 enum status snap_walk_along(struct snap_walk *walk, const struct axi_ramp *ramp, int direction,
                             int target_count, const double *target, struct axi_state *state);
 
 void snap_path_release(struct snap_path *path);
+
+/* Axial force that is comparable with the pressures of the job, N. */
+double snap_force_scale(const struct snap_spec *spec);
 
 /* Whether nothing more can be computed after such an end. */
 bool snap_is_final(enum status status);

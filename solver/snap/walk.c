@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "solver/snap/study.h"
 
@@ -114,13 +115,27 @@ static bool visit(void *context, const struct axi_state *state,
     walk->waves_at = point->arc;
     walk->status = snap_test_waves(walk->study, walk->path->name, state, walk->error);
   }
-  return walk->status == STATUS_OK && walk->go_on(walk, state, point) && walk->status == STATUS_OK;
+  walk->open =
+      walk->status == STATUS_OK && walk->go_on(walk, state, point) && walk->status == STATUS_OK;
+  return walk->open;
 }
 
-/* What was recorded before an attempt. */
+/* What was known before an attempt. */
 struct record {
   int points, events, waves;
+  struct snap_metrics metrics;
+  bool has[SNAP_MARKS];
 };
+
+static struct record remember(const struct snap_walk *walk) {
+  const struct snap_study *study = walk->study;
+  struct record now = {.points = walk->path->count,
+                       .events = study->event_count,
+                       .waves = study->waves_count,
+                       .metrics = study->metrics};
+  memcpy(now.has, study->has, sizeof now.has);
+  return now;
+}
 
 static void forget(struct snap_walk *walk, const struct record *before) {
   struct snap_study *study = walk->study;
@@ -129,6 +144,8 @@ static void forget(struct snap_walk *walk, const struct record *before) {
   }
   walk->path->count = before->points;
   study->event_count = before->events;
+  study->metrics = before->metrics;
+  memcpy(study->has, before->has, sizeof before->has);
 }
 
 /* How a path is followed: where walls come into touch it turns within nanometres, and what gets
@@ -155,13 +172,17 @@ static enum status attempt(struct snap_walk *walk, int manner, const struct axi_
   walk->status = STATUS_OK;
   enum status status = study->body.follow(study->body.self, ramp, &options, direction, NULL, visit,
                                           walk, state, walk->error);
+  if (status == STATUS_OK && walk->status == STATUS_OK && walk->open) {
+    return error_set(walk->error, STATUS_DIVERGED, NULL, "there is no end of it within %d states",
+                     options.steps_max);
+  }
   return status == STATUS_OK ? walk->status : status;
 }
 
 enum status snap_walk_along(struct snap_walk *walk, const struct axi_ramp *ramp, int direction,
                             int target_count, const double *target, struct axi_state *state) {
   struct snap_study *study = walk->study;
-  struct record before = {walk->path->count, study->event_count, study->waves_count};
+  const struct record before = remember(walk);
   struct axi_state start;
   enum status status = snap_body_state(&study->body, &start, walk->error);
   if (status != STATUS_OK) {

@@ -1,6 +1,7 @@
 /* The second variation of recorded states in circumferential harmonics. */
 #include <stdlib.h>
 
+#include "solver/base/clock.h"
 #include "solver/snap/study.h"
 
 static struct snap_waves *append(struct snap_study *study) {
@@ -30,6 +31,32 @@ static int first_unstable(const struct snap_study *study, const int *negative) {
   return 0;
 }
 
+/* Between harmonics, which take their time. */
+static enum status interrupted(const struct snap_study *study, struct error *error) {
+  if (study->cancelled && study->cancelled(NULL)) {
+    return error_set(error, STATUS_CANCELLED, NULL, "the work was cancelled");
+  }
+  if (study->deadline_s > 0.0 && clock_wall_s() > study->deadline_s) {
+    return error_set(error, STATUS_TIMEOUT, NULL, "the time limit was reached");
+  }
+  return STATUS_OK;
+}
+
+static enum status count_negative(struct snap_study *study, const struct axi_state *state,
+                                  int *negative, struct error *error) {
+  enum { AT_ONCE = 8 };
+  int last = study->spec->harmonics_to;
+  enum status status = STATUS_OK;
+  for (int n = 0; status == STATUS_OK && n <= last; n += AT_ONCE) {
+    int to = n + AT_ONCE <= last ? n + AT_ONCE - 1 : last;
+    status = interrupted(study, error);
+    if (status == STATUS_OK) {
+      status = study->body.harmonics(study->body.self, state, n, to, negative + n, error);
+    }
+  }
+  return status;
+}
+
 enum status snap_test_waves(struct snap_study *study, const char *path,
                             const struct axi_state *state, struct error *error) {
   struct snap_waves *waves = append(study);
@@ -39,19 +66,19 @@ enum status snap_test_waves(struct snap_study *study, const char *path,
   waves->path = path;
   waves->pressure = state->pressure;
   waves->elongation = state->elongation;
-  enum status status = study->body.harmonics(study->body.self, state, study->spec->harmonics_to,
-                                             waves->negative, error);
-  if (status == STATUS_INVERTED) {
+  waves->inverted = study->body.inverted(study->body.self, state->u);
+  enum status status = count_negative(study, state, waves->negative, error);
+  if (status != STATUS_OK) {
     free(waves->negative);
     study->waves_count--;
-    return STATUS_OK;
+    return status == STATUS_INVERTED ? STATUS_OK : status;
   }
   int index = study->waves_count - 1;
   bool follows = index > 0 && study->waves[index - 1].path == path;
   int now = first_unstable(study, waves->negative);
   int before = follows ? first_unstable(study, study->waves[index - 1].negative) : 0;
-  if (status == STATUS_OK && now > 0 && before == 0) {
+  if (now > 0 && before == 0) {
     snap_study_event(study, SNAP_LOSS_OF_AXISYMMETRY, path, state, now);
   }
-  return status;
+  return STATUS_OK;
 }

@@ -270,6 +270,8 @@ static const struct {
   const char *actuator, *job, *pointer, *phrase;
 } refused[] = {
     {", \"hinge_length\": \"1.5 mm\"", "", "/actuator/hinge_length", "too short"},
+    {", \"hinge_length\": \"1 um\"", "", "/actuator/hinge_length", "1.562 mm"},
+    {", \"pairs\": 64", "", "/actuator/pairs", "at most 8"},
     {", \"hinge_wall\": \"0.3 mm\"", "", "/actuator/hinge_wall", "at least 0.35 mm"},
     {", \"supporting_slant\": \"8 mm\"", "", "/actuator/supporting_slant", "7.921371 mm"},
     {", \"supporting_pet\": \"9 mm\"", "", "/actuator/supporting_pet", "do not fit"},
@@ -327,6 +329,7 @@ static const struct {
     {"snapping_slant", "0.01 mm", "/actuator/snapping_slant", "too short"},
     {"outer_diameter", "8 mm", "/actuator/snapping_slant", "across the axis"},
     {"outer_diameter", "4 mm", "/actuator/outer_diameter", "too narrow"},
+    {"pet_thickness", "3 mm", "/actuator/wall", "at least 3.1 mm"},
     {"pet_thickness", "2 mm", "/actuator/wall", "at least 2.1 mm"},
     {"pet_thickness", "2", "/actuator/pet_thickness", "unit"},
 };

@@ -208,6 +208,63 @@ START_TEST(force_and_volume_are_reciprocal) {
 }
 END_TEST
 
+/* Of a bellows with thick hinges, whose folds close under vacuum. Nothing holds the body with its
+ * shells as moulded below the release pressure; a limit point above it, behind which the body is
+ * stable again, is none. Only then is the vacuum one that returns it. */
+START_TEST(the_release_is_the_last_state_before_shells_turn) {
+  struct job_spec other;
+  struct snap_study tried;
+  struct error error = {.status = STATUS_OK};
+  snap_case_must_read("", ", \"accuracy\": \"fast\"", &other);
+  ck_assert_int_eq(snap_study_open(other.snap, &tried, &error), STATUS_OK);
+  ck_assert_msg(snap_follow_vacuum(&tried, &error) == STATUS_OK, "%s", error.message);
+  const struct snap_path *path = &tried.path[0];
+  double least = 0.0, release = tried.metrics.release_pressure;
+  for (int i = 0; i < path->count; i++) {
+    const struct snap_point *p = &path->point[i];
+    if (p->negative_free == 0 && p->inverted == 0) {
+      least = fmin(least, p->pressure);
+    }
+  }
+  ck_assert(tried.has[SNAP_RELEASE]);
+  ck_assert_double_eq_tol(tried.state[SNAP_RELEASE].pressure / release, 1.0, 1e-12);
+  ck_assert_double_eq_tol(least / release, 1.0, 1e-3); /* a limit point is flat */
+  int limits = 0;
+  for (int i = 0; i < tried.event_count; i++) {
+    limits += tried.event[i].type == SNAP_LIMIT_POINT && tried.event[i].pressure > 0.95 * release;
+  }
+  ck_assert_int_ge(limits, 1);
+  ck_assert_int_gt(path->point[path->count - 1].inverted, 0);
+  close_all(&other, &tried);
+}
+END_TEST
+
+/* What is asked for between 0 and pressures that are too small. */
+START_TEST(missing_limit_points_are_named) {
+  struct job_spec other;
+  struct snap_study tried;
+  struct error error = {.status = STATUS_OK};
+  read_scaled(1.0, 1.0, &other);
+  other.snap->pressure_to = 0.2e3;
+  other.snap->vacuum_to = -10.0;
+  other.snap->extension_at = 0.0;
+  other.snap->law_count = 0;
+  ck_assert_int_eq(snap_study_open(other.snap, &tried, &error), STATUS_OK);
+  ck_assert_msg(snap_study_run(&tried, &error) == STATUS_OK, "%s", error.message);
+  ck_assert(isnan(tried.metrics.trigger_pressure));
+  ck_assert(isnan(tried.metrics.release_pressure));
+  ck_assert_double_eq_tol(tried.metrics.stretched, 0.0, 1e-12);
+  bool trigger = false, release = false;
+  for (int i = 0; i < tried.warning_count; i++) {
+    trigger = trigger || strstr(tried.warning[i], "raise /load/pressure_to") != NULL;
+    release = release || strstr(tried.warning[i], "lower /load/vacuum_to") != NULL;
+  }
+  ck_assert(trigger);
+  ck_assert(release);
+  close_all(&other, &tried);
+}
+END_TEST
+
 START_TEST(a_calibration_meets_its_target) {
   struct job_spec other;
   struct error error = {.status = STATUS_OK};
@@ -287,6 +344,8 @@ int main(void) {
   tcase_add_test(paths, paths_meet);
   tcase_add_test(paths, results_scale_with_lengths_and_moduli);
   tcase_add_test(paths, force_and_volume_are_reciprocal);
+  tcase_add_test(jobs, the_release_is_the_last_state_before_shells_turn);
+  tcase_add_test(jobs, missing_limit_points_are_named);
   tcase_add_test(jobs, a_calibration_meets_its_target);
   tcase_add_test(jobs, it_stops_when_told);
   tcase_add_test(jobs, a_body_with_one_state_says_so);
