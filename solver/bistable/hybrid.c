@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "solver/base/text.h"
+
 /* Time constant of a supply that has none, s. */
 #define DIRECT 1e-3
 #define KPA 1e3
@@ -300,7 +302,7 @@ static json_t *hold_array(const struct hybrid *hybrid, double to, double *end) {
 json_t *hybrid_job(const struct hybrid *hybrid, const char *name, double rest_length, double to) {
   char title[200];
   double end;
-  snprintf(title, sizeof title, "hybrid model of %.120s", name);
+  snprintf(title, sizeof title, "hybrid model of %.*s", (int)text_prefix(name, 120), name);
   json_t *hold = hold_array(hybrid, to, &end);
   json_t *model = json_pack(
       "{s:o, s:o, s:{s:o, s:o}, s:o}", "mass", quantity(1e3 * hybrid->mass, "g"), "gamma",

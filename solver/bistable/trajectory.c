@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "solver/base/text.h"
+
 /* Part of its peak that the speed has fallen to when a travel is over. */
 #define SLOW 0.01
 
@@ -19,8 +21,9 @@ void bistable_warn(struct bistable_trajectory *t, const char *format, ...) {
   if (t->warning_count < BISTABLE_WARNINGS_MAX) {
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(t->warning[t->warning_count++], BISTABLE_WARNING_TEXT, format, arguments);
+    vsnprintf(t->warning[t->warning_count], BISTABLE_WARNING_TEXT, format, arguments);
     va_end(arguments);
+    text_repair(t->warning[t->warning_count++]); /* a name may be cut within a character */
   }
 }
 

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "solver/base/text.h"
 #include "solver/hlpv/linear.h"
 #include "solver/hlpv/tracking.h"
 
@@ -53,8 +54,9 @@ void recorder_warn(struct recorder *recorder, const char *format, ...) {
   }
   va_list arguments;
   va_start(arguments, format);
-  vsnprintf(out->warning[out->warning_count++], HLPV_WARNING_TEXT, format, arguments);
+  vsnprintf(out->warning[out->warning_count], HLPV_WARNING_TEXT, format, arguments);
   va_end(arguments);
+  text_repair(out->warning[out->warning_count++]); /* a name may be cut within a character */
 }
 
 /* ---- samples and extremes ----------------------------------------------------------------- */

@@ -90,6 +90,7 @@ void study_thin_warnings(json_t *members, json_t *warnings) {
            warned, json_array_size(members),
            bytes > WARNING_BYTES_MAX ? ", too many to keep them all" : "",
            json_string_value(first));
+  text_repair(sentence); /* the first one may be cut within a character */
   json_array_append_new(warnings, json_string(sentence));
   for (index = 0; bytes > WARNING_BYTES_MAX && index < json_array_size(members); index++) {
     json_object_del(json_array_get(members, index), "warnings");

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "solver/bistable/simulate.h"
+#include "solver/job/json.h"
 #include "tests/physics/fold_law.h"
 #include "tests/unit/suite.h"
 
@@ -461,6 +462,17 @@ START_TEST(what_is_let_go_is_named) {
 }
 END_TEST
 
+/* A name that is cut within a character leaves a warning that is text. */
+START_TEST(warnings_are_text) {
+  struct bistable_trajectory t = {0};
+  bistable_warn(&t, "the law \"%.2s\"", "p\u00fcr");
+  json_t *texts = json_texts(t.warning[0], sizeof t.warning[0], t.warning_count);
+  ck_assert_uint_eq(json_array_size(texts), 1);
+  ck_assert_str_eq(json_string_value(json_array_get(texts, 0)), "the law \"p?\"");
+  json_decref(texts);
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("bistable: motion");
   TCase *tcase = tcase_create("all");
@@ -480,6 +492,7 @@ int main(void) {
   tcase_add_loop_test(tcase, a_push_gives_its_impulse, 0, 2);
   tcase_add_test(tcase, an_impact_keeps_the_momentum);
   tcase_add_test(tcase, what_is_let_go_is_named);
+  tcase_add_test(tcase, warnings_are_text);
   suite_add_tcase(suite, tcase);
   return suite_run(suite);
 }
