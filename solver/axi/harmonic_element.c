@@ -126,16 +126,6 @@ bool harmonic_element(const struct axi_mesh *mesh, const struct axi_geometry *ge
 static const double gauss_at[AXI_EDGE_POINTS] = {-0.774596669241483377, 0, 0.774596669241483377};
 static const double gauss_weight[AXI_EDGE_POINTS] = {5.0 / 9, 8.0 / 9, 5.0 / 9};
 
-/* Quadratic functions with nodes at -1, 1, 0 and their derivatives. */
-static void quadratic(double x, double value[3], double slope[3]) {
-  value[0] = 0.5 * x * (x - 1);
-  value[1] = 0.5 * x * (x + 1);
-  value[2] = 1 - x * x;
-  slope[0] = x - 0.5;
-  slope[1] = x + 0.5;
-  slope[2] = -2 * x;
-}
-
 /* With x = (r + a) e_r + b e_t and z + c on the deformed surface, the volume is the integral of
  * half of (x dy - y dx) dz, and its part of second order in a cos, b sin, c cos is, around the
  * axis (pi, for n = 0 twice that),
@@ -147,7 +137,7 @@ void harmonic_edge(const struct axi_mesh *mesh, int edge, const double *u, doubl
   memset(form, 0, sizeof *form * HARMONIC_EDGE * HARMONIC_EDGE);
   for (int q = 0; q < AXI_EDGE_POINTS; q++) {
     double value[3], slope[3], r = 0, dr = 0, dz = 0;
-    quadratic(gauss_at[q], value, slope);
+    axi_edge_shape(gauss_at[q], value, slope);
     for (int a = 0; a < AXI_EDGE_NODES; a++) {
       const double *x = mesh->position + 2 * node[a], *d = u + 2 * node[a];
       r += value[a] * (x[0] + d[0]);
