@@ -1,5 +1,6 @@
 #include "tools/figure.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -24,4 +25,14 @@ bool figure_write(const char *program, const char *plot, const struct plot_input
     return false;
   }
   return figure_save(png, size, path);
+}
+
+double figure_number(const json_t *object, const char *key) {
+  const json_t *value = json_object_get(object, key);
+  return json_is_number(value) ? json_number_value(value) : NAN;
+}
+
+const char *figure_text(const json_t *object, const char *key) {
+  const char *text = json_string_value(json_object_get(object, key));
+  return text ? text : "";
 }

@@ -44,16 +44,6 @@ static const struct section {
                 {"@HYBRID@\n", FIGURES_HYBRID, print_hybrid},
                 {"@QUEUE@\n", FIGURES_QUEUE, print_queue}};
 
-double figure_number(const json_t *object, const char *key) {
-  const json_t *value = json_object_get(object, key);
-  return json_is_number(value) ? json_number_value(value) : NAN;
-}
-
-const char *figure_text(const json_t *object, const char *key) {
-  const char *text = json_string_value(json_object_get(object, key));
-  return text ? text : "";
-}
-
 /* A missing file is no failure, a damaged one is. */
 static bool read_figures(const char *directory, struct figures *figures) {
   for (int k = 0; k < FIGURES_COUNT; k++) {

@@ -5,6 +5,7 @@
 #include <jansson.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include "tools/figure.h"
 
 enum figures_part {
   FIGURES_SOLVE,
@@ -26,11 +27,6 @@ enum figures_part {
 struct figures {
   json_t *part[FIGURES_COUNT];
 };
-
-/* Number at `key`, NAN when there is none. Any object may be NULL. */
-double figure_number(const json_t *object, const char *key);
-/* Text at `key`, "" when there is none. */
-const char *figure_text(const json_t *object, const char *key);
 
 /* How designs ended. */
 struct endings {

@@ -3,15 +3,11 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "tools/figure.h"
 #include "tools/reproduction.h"
 
-static const char *text_of(const json_t *object, const char *key) {
-  const char *text = json_string_value(json_object_get(object, key));
-  return text ? text : "";
-}
-
 static bool is_of(const json_t *entry, const char *paper) {
-  return strcmp(text_of(entry, "paper"), paper) == 0;
+  return strcmp(figure_text(entry, "paper"), paper) == 0;
 }
 
 static const char *space_before(const char *unit) {
@@ -23,7 +19,7 @@ static const char *space_before(const char *unit) {
 /* How far a found value is from the published one, or whether it keeps to a published bound. */
 static void print_difference(FILE *out, const json_t *entry, const struct finding *ours) {
   const json_t *number = json_object_get(entry, "published");
-  const char *relation = text_of(entry, "relation"), *unit = text_of(entry, "unit");
+  const char *relation = figure_text(entry, "relation"), *unit = figure_text(entry, "unit");
   double published = json_number_value(number), difference = ours->value - published;
   if (!json_is_number(number)) {
     fputs("-", out);
@@ -40,7 +36,7 @@ static void print_difference(FILE *out, const json_t *entry, const struct findin
 
 static void print_published(FILE *out, const json_t *entry) {
   const json_t *number = json_object_get(entry, "published");
-  const char *relation = text_of(entry, "relation"), *unit = text_of(entry, "unit");
+  const char *relation = figure_text(entry, "relation"), *unit = figure_text(entry, "unit");
   if (json_is_string(number)) {
     fputs(json_string_value(number), out);
   } else {
@@ -51,8 +47,8 @@ static void print_published(FILE *out, const json_t *entry) {
 
 static void print_value(FILE *out, const struct works *works, const json_t *entry) {
   struct finding ours = finding_from(works, json_object_get(entry, "ours"));
-  const char *unit = text_of(entry, "unit");
-  fprintf(out, "| %s | ", text_of(entry, "what"));
+  const char *unit = figure_text(entry, "unit");
+  fprintf(out, "| %s | ", figure_text(entry, "what"));
   print_published(out, entry);
   if (!ours.found) {
     fprintf(out, " | %s | | |\n", ours.missing);
@@ -99,7 +95,7 @@ static bool print_group(FILE *out, const struct works *works, const json_t *step
   *group = (struct group){INFINITY, -INFINITY};
   json_array_foreach(steps, index, step) {
     struct finding ours = finding_from(works, step);
-    fprintf(out, "%s%s: ", first && index == 0 ? "" : ", ", text_of(step, "label"));
+    fprintf(out, "%s%s: ", first && index == 0 ? "" : ", ", figure_text(step, "label"));
     if (ours.found) {
       fprintf(out, "%.4g", ours.value);
       *group = (struct group){fmin(group->low, ours.value), fmax(group->high, ours.value)};
@@ -114,10 +110,10 @@ static bool print_group(FILE *out, const struct works *works, const json_t *step
 /* "steps" are in the published order; "groups" are lists of steps without an order among them. */
 static void print_trend(FILE *out, const struct works *works, const json_t *entry) {
   const json_t *steps = json_object_get(entry, "steps"), *groups = json_object_get(entry, "groups");
-  const char *direction = text_of(entry, "direction");
+  const char *direction = figure_text(entry, "direction");
   struct group before = {0, 0}, group;
   bool as_published = true, complete = true;
-  fprintf(out, "| %s | %s | ", text_of(entry, "what"), direction);
+  fprintf(out, "| %s | %s | ", figure_text(entry, "what"), direction);
   for (size_t g = 0; g < json_array_size(groups ? groups : steps); g++) {
     json_t *one = groups ? json_incref(json_array_get(groups, g))
                          : json_pack("[O]", json_array_get(steps, g));
@@ -146,7 +142,7 @@ static const json_t *ranked(const json_t *designs, const char *name) {
   size_t index;
   json_t *design;
   json_array_foreach(designs, index, design) {
-    if (strcmp(text_of(design, "name"), name) == 0) {
+    if (strcmp(figure_text(design, "name"), name) == 0) {
       return design;
     }
   }
@@ -167,9 +163,9 @@ static void print_printed_rows(FILE *out, const json_t *rows, const json_t *desi
         out);
   json_array_foreach(rows, index, row) {
     double mean = number(row, "mean"), variance = number(row, "variance");
-    const json_t *ours = ranked(designs, text_of(row, "name"));
+    const json_t *ours = ranked(designs, figure_text(row, "name"));
     fprintf(out, "| %.0f | %s | %.3f | %.3f | %.4f | %.4f | ", number(row, "rank"),
-            text_of(row, "name"), mean, variance, number(row, "final"),
+            figure_text(row, "name"), mean, variance, number(row, "final"),
             mean_weight * mean + (1 - mean_weight) * (1 - variance));
     if (ours) {
       fprintf(out, "%.0f | %.3f | %.3f | %.4f |\n", number(ours, "rank"),
@@ -188,14 +184,14 @@ static void print_best(FILE *out, const json_t *designs, size_t most) {
   for (size_t i = 0; i < json_array_size(designs) && i < most; i++) {
     const json_t *row = json_array_get(designs, i);
     fprintf(out, "| %.0f | %s | %.3f | %.3f | %.4f | %.0f |\n", number(row, "rank"),
-            text_of(row, "name"), number(row, "mean_weighted"), number(row, "normalised_variance"),
-            number(row, "final"), number(row, "other_rank"));
+            figure_text(row, "name"), number(row, "mean_weighted"),
+            number(row, "normalised_variance"), number(row, "final"), number(row, "other_rank"));
   }
 }
 
 void print_ranking(FILE *out, const struct works *works, const json_t *data) {
   const json_t *section = json_object_get(data, "ranking");
-  const json_t *result = works_result(works, text_of(section, "from"));
+  const json_t *result = works_result(works, figure_text(section, "from"));
   const json_t *ranking = json_object_get(result, "ranking");
   const json_t *metrics = json_object_get(result, "metrics");
   const json_t *designs = json_object_get(ranking, "designs");
@@ -205,7 +201,7 @@ void print_ranking(FILE *out, const struct works *works, const json_t *data) {
             "and are ranked.\n\n",
             number(metrics, "designs"), number(metrics, "distinct"), number(metrics, "solved"));
   } else {
-    fprintf(out, "Missing: %s has not been run.\n\n", text_of(section, "from"));
+    fprintf(out, "Missing: %s has not been run.\n\n", figure_text(section, "from"));
   }
   print_printed_rows(out, json_object_get(section, "published"), designs,
                      number(section, "mean_weight"));
@@ -223,21 +219,21 @@ void print_figures(FILE *out, const json_t *data, const char *paper, const char 
       continue;
     }
     char path[WORK_PATH];
-    snprintf(path, sizeof path, "%s/%s.png", figures, text_of(entry, "file"));
+    snprintf(path, sizeof path, "%s/%s.png", figures, figure_text(entry, "file"));
     if (access(path, R_OK) == 0) {
-      fprintf(out, "![%s](figures/reproduction/%s.png)\n\n*%s*\n\n", text_of(entry, "caption"),
-              text_of(entry, "file"), text_of(entry, "caption"));
+      fprintf(out, "![%s](figures/reproduction/%s.png)\n\n*%s*\n\n", figure_text(entry, "caption"),
+              figure_text(entry, "file"), figure_text(entry, "caption"));
     } else {
-      fprintf(out, "*%s*: missing, %s could not be drawn.\n\n", text_of(entry, "caption"),
-              text_of(entry, "from"));
+      fprintf(out, "*%s*: missing, %s could not be drawn.\n\n", figure_text(entry, "caption"),
+              figure_text(entry, "from"));
     }
   }
 }
 
 static void print_outcome(FILE *out, const json_t *result) {
   const json_t *metrics = json_object_get(result, "metrics");
-  const char *reason = text_of(result, "reason");
-  fprintf(out, "%s%s%s", text_of(result, "status"), *reason ? ", " : "", reason);
+  const char *reason = figure_text(result, "reason");
+  fprintf(out, "%s%s%s", figure_text(result, "status"), *reason ? ", " : "", reason);
   if (json_object_get(metrics, "designs")) {
     fprintf(out, "; %.0f of %.0f members reached their load, %.0f computed",
             number(metrics, "solved"), number(metrics, "designs"), number(metrics, "distinct"));

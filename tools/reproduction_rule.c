@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "tools/figure.h"
 #include "tools/reproduction.h"
 
 static const struct work *find_work(const struct works *works, const char *name, size_t length) {
@@ -45,11 +46,6 @@ static const json_t *at_pointer(const json_t *value, const char *pointer, const 
   return value;
 }
 
-static double number_of(const json_t *object, const char *key) {
-  const json_t *value = json_object_get(object, key);
-  return json_is_number(value) ? json_number_value(value) : NAN;
-}
-
 /* Value of `y` where `x` passes `at`, the first or the last time, linear between samples; NAN when
  * it does not. */
 static double interpolate(const json_t *samples, const char *x, const char *y, double at,
@@ -57,10 +53,10 @@ static double interpolate(const json_t *samples, const char *x, const char *y, d
   double found = NAN;
   for (size_t i = 0; i + 1 < json_array_size(samples) && (last || isnan(found)); i++) {
     const json_t *a = json_array_get(samples, i), *b = json_array_get(samples, i + 1);
-    double x0 = number_of(a, x), x1 = number_of(b, x);
+    double x0 = figure_number(a, x), x1 = figure_number(b, x);
     if ((x0 - at) * (x1 - at) <= 0 && x0 != x1) {
       double t = (at - x0) / (x1 - x0);
-      found = (1 - t) * number_of(a, y) + t * number_of(b, y);
+      found = (1 - t) * figure_number(a, y) + t * figure_number(b, y);
     }
   }
   return found;
@@ -71,7 +67,7 @@ static double extreme(const json_t *samples, const char *key, bool largest) {
   size_t index;
   json_t *sample;
   json_array_foreach(samples, index, sample) {
-    double value = number_of(sample, key);
+    double value = figure_number(sample, key);
     found = isnan(found) || (largest ? value > found : value < found) ? value : found;
   }
   return found;
@@ -96,7 +92,7 @@ static const json_t *samples_of(const json_t *result, const char *path) {
 static double from_samples(const json_t *result, const json_t *rule, const char *key) {
   const json_t *samples = samples_of(result, json_string_value(json_object_get(rule, "path")));
   const char *end = json_string_value(json_object_get(rule, "extreme"));
-  double at = number_of(rule, "at_kPa"), reaches = number_of(rule, "reaches");
+  double at = figure_number(rule, "at_kPa"), reaches = figure_number(rule, "reaches");
   bool last = json_is_true(json_object_get(rule, "last"));
   return end          ? extreme(samples, key, strcmp(end, "largest") == 0)
          : !isnan(at) ? interpolate(samples, "pressure_kPa", key, at, last)
@@ -109,7 +105,7 @@ static struct finding from_result(const struct works *works, const json_t *rule)
   const char *from = json_string_value(json_object_get(rule, "from"));
   const char *pointer = json_string_value(json_object_get(rule, "value"));
   const char *key = json_string_value(json_object_get(rule, "key"));
-  double factor = number_of(rule, "factor");
+  double factor = figure_number(rule, "factor");
   factor = isnan(factor) ? 1 : factor;
   const json_t *result = from ? works_result(works, from) : NULL;
   if (!result) {

@@ -24,13 +24,8 @@ static const json_t *member(const json_t *object, const char *key) {
   return json_object_get(object, key);
 }
 
-static const char *text_of(const json_t *object, const char *key) {
-  const char *text = json_string_value(member(object, key));
-  return text ? text : "";
-}
-
 static const char *case_name(const json_t *result) {
-  return text_of(member(result, "case"), "name");
+  return figure_text(member(result, "case"), "name");
 }
 
 /* Significant digits for values, two for errors; "-" for what is absent. */
@@ -50,7 +45,7 @@ static void print_percent(FILE *out, const json_t *value) {
 
 static void print_source(FILE *out, const json_t *known) {
   const json_t *source = member(known, "source");
-  fprintf(out, "%s (%lld)", text_of(source, "author"),
+  fprintf(out, "%s (%lld)", figure_text(source, "author"),
           (long long)json_integer_value(member(source, "year")));
 }
 
@@ -62,13 +57,13 @@ static void print_summary(FILE *out, const struct results *results) {
     const json_t *r = results->document[i], *known = member(r, "case");
     const json_t *metrics = member(r, "metrics"), *meshes = member(r, "meshes");
     const json_t *last = json_array_get(meshes, json_array_size(meshes) - 1);
-    fprintf(out, "| [%s](#%s) | %s | ", case_name(r), case_name(r), text_of(known, "quantity"));
-    print_number(out, member(metrics, "computed"), "%.6g", text_of(known, "unit"));
+    fprintf(out, "| [%s](#%s) | %s | ", case_name(r), case_name(r), figure_text(known, "quantity"));
+    print_number(out, member(metrics, "computed"), "%.6g", figure_text(known, "unit"));
     fputs(" | ", out);
-    print_number(out, member(metrics, "reference"), "%.6g", text_of(known, "unit"));
+    print_number(out, member(metrics, "reference"), "%.6g", figure_text(known, "unit"));
     fputs(" | ", out);
     print_percent(out, member(metrics, "error_percent"));
-    fprintf(out, " | %s | ", text_of(last, "mesh"));
+    fprintf(out, " | %s | ", figure_text(last, "mesh"));
     print_number(out, member(last, "unknowns"), "%.0f", "");
     fputs(" | ", out);
     print_source(out, known);
@@ -79,15 +74,15 @@ static void print_summary(FILE *out, const struct results *results) {
 static void print_meshes(FILE *out, const json_t *r) {
   const json_t *known = member(r, "case"), *meshes = member(r, "meshes"), *mesh;
   size_t index;
-  const char *other = text_of(known, "other_norm");
+  const char *other = figure_text(known, "other_norm");
   fprintf(out, "| mesh | unknowns | computed | error%s%s |%s%s%s\n|---|---|---|---|%s\n",
-          *other ? ", " : "", text_of(known, "norm"), *other ? " error, " : "", other,
+          *other ? ", " : "", figure_text(known, "norm"), *other ? " error, " : "", other,
           *other ? " |" : "", *other ? "---|" : "");
   json_array_foreach(meshes, index, mesh) {
-    fprintf(out, "| %s | ", text_of(mesh, "mesh"));
+    fprintf(out, "| %s | ", figure_text(mesh, "mesh"));
     print_number(out, member(mesh, "unknowns"), "%.0f", "");
     fputs(" | ", out);
-    print_number(out, member(mesh, "computed"), "%.6g", text_of(known, "unit"));
+    print_number(out, member(mesh, "computed"), "%.6g", figure_text(known, "unit"));
     fputs(" | ", out);
     print_percent(out, member(mesh, "error_percent"));
     fputs(" |", out);
@@ -121,12 +116,12 @@ static void print_metrics(FILE *out, const json_t *r) {
 
 static void print_case(FILE *out, const json_t *r) {
   const json_t *known = member(r, "case"), *metrics = member(r, "metrics");
-  fprintf(out, "### %s\n\n%s. Compared: %s. Reference: ", case_name(r), text_of(known, "title"),
-          text_of(known, "quantity"));
+  fprintf(out, "### %s\n\n%s. Compared: %s. Reference: ", case_name(r), figure_text(known, "title"),
+          figure_text(known, "quantity"));
   print_source(out, known);
-  fprintf(out, ", %s. Bound for the coarsest mesh: ", text_of(member(known, "source"), "work"));
+  fprintf(out, ", %s. Bound for the coarsest mesh: ", figure_text(member(known, "source"), "work"));
   print_percent(out, member(metrics, "bound_percent"));
-  fprintf(out, " (%s).\n\n", text_of(known, "bound_because"));
+  fprintf(out, " (%s).\n\n", figure_text(known, "bound_because"));
   print_meshes(out, r);
   print_metrics(out, r);
   fprintf(out, "\n![error of %s](figures/%s.png)", case_name(r), case_name(r));
@@ -137,7 +132,7 @@ static void print_case(FILE *out, const json_t *r) {
 }
 
 static bool write_figure(const json_t *r, const char *plot, const char *path) {
-  struct plot_input input = {.result = r, .title = text_of(member(r, "case"), "title")};
+  struct plot_input input = {.result = r, .title = figure_text(member(r, "case"), "title")};
   return figure_write("verification", plot, &input, 1, FIGURE_WIDTH, FIGURE_HEIGHT, path);
 }
 
@@ -167,10 +162,10 @@ static bool read_results(int count, char **paths, struct results *results) {
       return false;
     }
     results->document[results->count++] = document;
-    if (strcmp(text_of(document, "kind"), "verify") != 0 ||
-        strcmp(text_of(document, "status"), "succeeded") != 0) {
+    if (strcmp(figure_text(document, "kind"), "verify") != 0 ||
+        strcmp(figure_text(document, "status"), "succeeded") != 0) {
       fprintf(stderr, "verification: %s: not a verification that succeeded: %s\n", paths[i],
-              text_of(document, "message"));
+              figure_text(document, "message"));
       return false;
     }
   }
