@@ -19,9 +19,10 @@ enum status axi_mesh_create(int node_count, int element_count, int inner_count, 
   mesh->inner = room(inner_count, sizeof *mesh->inner);
   mesh->outer = room(outer_count, sizeof *mesh->outer);
   mesh->hold = room(2 * node_count, sizeof *mesh->hold);
+  mesh->offset = room(2 * node_count, sizeof *mesh->offset);
   mesh->master = room(node_count, sizeof *mesh->master);
   if (!mesh->position || !mesh->element || !mesh->inner || !mesh->outer || !mesh->hold ||
-      !mesh->master) {
+      !mesh->offset || !mesh->master) {
     axi_mesh_release(mesh);
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for a mesh of %d nodes", node_count);
   }
@@ -37,6 +38,7 @@ void axi_mesh_release(struct axi_mesh *mesh) {
   free(mesh->inner);
   free(mesh->outer);
   free(mesh->hold);
+  free(mesh->offset);
   free(mesh->master);
   memset(mesh, 0, sizeof *mesh);
 }

@@ -33,10 +33,11 @@ struct axi_mesh {
   int node_count, element_count, inner_count, outer_count, region_count;
   double *position; /* node_count x 2: r, z in m */
   struct axi_element *element;
-  struct axi_edge *inner;                       /* around the cavity, which the pressure acts on */
-  struct axi_edge *outer;                       /* facing the surroundings */
-  unsigned char *hold;                          /* node_count x 2, enum axi_hold of u_r and u_z */
-  int *master;                                  /* node_count; -1 where nothing is tied */
+  struct axi_edge *inner; /* around the cavity, which the pressure acts on */
+  struct axi_edge *outer; /* facing the surroundings */
+  unsigned char *hold;    /* node_count x 2, enum axi_hold of u_r and u_z */
+  double *offset;         /* node_count x 2, m: added to what holds a component; 0 unless set */
+  int *master;            /* node_count; -1 where nothing is tied */
   struct material_spec region[AXI_REGIONS_MAX]; /* of the elements */
 };
 

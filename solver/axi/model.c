@@ -337,7 +337,7 @@ void axi_model_expand(const struct axi_model *model, const double *x, double *u)
   }
   for (int i = 0; !model->shell && i < 2 * model->mesh->node_count; i++) {
     const struct axi_place *p = &model->place[i];
-    u[i] = (p->base >= 0 ? x[p->base] : 0) + p->plus * h;
+    u[i] = (p->base >= 0 ? x[p->base] : 0) + p->plus * h + model->mesh->offset[i];
   }
 }
 

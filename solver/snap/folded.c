@@ -1,6 +1,9 @@
 #include "solver/snap/folded.h"
 
 #include <math.h>
+#include <stdlib.h>
+
+#include "solver/snap/carry.h"
 
 /* Ratios of bulk to shear modulus of the foam: as it is pushed, and as it is carried over. */
 static const double foam = 0.3;
@@ -198,5 +201,131 @@ enum status folded_state(const struct snap_spec *spec, struct bellows *bellows,
   }
   region[BELLOWS_SILICONE] = spec->silicone;
   region[BELLOWS_PET] = spec->pet;
+  return status;
+}
+
+/* ---- from a single pair ------------------------------------------------------------------- */
+
+/* The state at a pressure near the guess: as silicone, or as foam that becomes it. */
+static enum status settle(const struct push *push, struct bellows *bellows, struct axi_model *model,
+                          double pressure, const struct continuation_options *options,
+                          struct axi_state *state, struct error *error) {
+  const struct snap_spec *spec = push->spec;
+  struct axi_load load = {.pressure = pressure};
+  struct axi_state guess;
+  double *ratio = &bellows->mesh.region[BELLOWS_SILICONE].bulk_ratio;
+  enum status status = axi_state_create(model, &guess, error);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  axi_state_copy(model, state, &guess);
+  status = axi_equilibrium(model, &load, false, options, state, NULL, error);
+  if (may_try_again(status)) {
+    axi_state_copy(model, &guess, state);
+    *ratio = fmin(foam, spec->silicone.bulk_ratio);
+    status = axi_equilibrium(model, &load, false, options, state, NULL, error);
+    if (status == STATUS_OK) {
+      status = change(ratio, spec->silicone.bulk_ratio, model, &load, false, options, state, error);
+    }
+    *ratio = spec->silicone.bulk_ratio;
+  }
+  axi_state_destroy(&guess);
+  return status;
+}
+
+/* What the ends of a row that goes on do at the elongation, as offsets of the plates. */
+static void ends_of_row(const struct snap_spec *spec, const struct bellows *b, double elongation,
+                        const double *u, double *offset) {
+  for (int j = 0; spec->ends == SNAP_PLATES && j < b->column_count; j++) {
+    int low = bellows_node(b, 0, j), high = bellows_node(b, b->row_count - 1, j);
+    for (int i = 0; i < 2; i++) {
+      offset[2 * low + i] = u[2 * low + i];
+      offset[2 * high + i] = u[2 * high + i] - i * elongation;
+    }
+  }
+}
+
+static void set_ends(struct bellows *b, const double *offset, double share) {
+  for (int i = 0; i < 2 * b->mesh.node_count; i++) {
+    b->mesh.offset[i] = share * offset[i];
+  }
+}
+
+/* Brings the ends to their plates, in steps that get shorter where Newton's method fails. */
+static enum status bring_ends(struct bellows *b, struct axi_model *model, const double *offset,
+                              const struct axi_load *load,
+                              const struct continuation_options *options, struct axi_state *state,
+                              struct error *error) {
+  static const double smallest = 1e-3;
+  double step = 0.1, left = 1.0;
+  enum status status = STATUS_OK;
+  while (status == STATUS_OK && left > 0.0) {
+    double next = fmax(left - step, 0.0);
+    set_ends(b, offset, next);
+    enum status one = axi_equilibrium(model, load, false, options, state, NULL, error);
+    if (one == STATUS_OK) {
+      left = next;
+      step *= 1.5;
+    } else {
+      step *= 0.5;
+      status = may_try_again(one) && step > smallest ? STATUS_OK : one;
+    }
+  }
+  return status;
+}
+
+/* The folded row at a pressure that is the last of its loads, and without load. */
+static enum status fold_row(const struct push *push, struct bellows *bellows,
+                            struct axi_model *model, double pressure, const double *offset,
+                            const struct continuation_options *options, struct axi_state *state,
+                            struct error *error) {
+  struct axi_load load = {.pressure = pressure};
+  set_ends(bellows, offset, 1.0);
+  enum status status = settle(push, bellows, model, pressure, options, state, error);
+  if (status == STATUS_OK && push->spec->ends == SNAP_PLATES) {
+    status = bring_ends(bellows, model, offset, &load, options, state, error);
+  }
+  set_ends(bellows, offset, 0.0);
+  if (status == STATUS_OK) {
+    status = inflate(model, pressure, 0.0, options, state, error);
+  }
+  if (status == STATUS_OK && !is_folded(push, state)) {
+    int pairs = push->spec->pair_count;
+    status = error_set(error, STATUS_UNSTABLE_PATH, NULL,
+                       "%d of %d shells turned inside out stay so without load",
+                       bellows_inverted(bellows, pairs, state->u), pairs);
+  }
+  return status;
+}
+
+enum status folded_from_pair(const struct snap_spec *spec, struct bellows *bellows,
+                             struct axi_model *model, const struct bellows *pair,
+                             const struct axi_state *pair_state, const struct folded_limits *limits,
+                             struct axi_state *state, struct error *error) {
+  static const double part[] = {0.0, 1.0 / 3.0, 0.15, 0.5};
+  enum { PARTS = sizeof part / sizeof *part };
+  struct push push = {spec, bellows, false};
+  struct continuation_options options = axi_defaults(model);
+  options.deadline_s = limits->deadline_s;
+  options.cancelled = limits->cancelled;
+  options.iterations_max = 60;
+  enum status status = STATUS_DIVERGED;
+  double *offset = calloc(2 * (size_t)bellows->mesh.node_count, sizeof *offset);
+  if (!offset) {
+    return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for a guess");
+  }
+  for (int i = 0; i < PARTS && may_try_again(status); i++) {
+    double elongation = 0.0;
+    status = carry_pair(pair, pair_state->u, pair_state->elongation, bellows, state->u, &elongation,
+                        error);
+    if (status == STATUS_OK) {
+      ends_of_row(spec, bellows, elongation, state->u, offset);
+      axi_model_gather(model, state->u, state->x);
+      state->x[axi_model_size(model) - 1] = elongation;
+      status = fold_row(&push, bellows, model, part[i] * spec->pressure_to, offset, &options, state,
+                        error);
+    }
+  }
+  free(offset);
   return status;
 }

@@ -25,4 +25,12 @@ enum status folded_state(const struct snap_spec *spec, struct bellows *bellows,
                          struct axi_model *model, const struct folded_limits *limits,
                          struct axi_state *state, struct error *error);
 
+/* The same for a row of pairs or a finer mesh, from the compressed state of one pair of an endless
+ * row in its own mesh (solver/snap/carry.h): Newton's method from there, without load or under a
+ * pressure that is taken away again. Returns as folded_state, or STATUS_NO_MEMORY. */
+enum status folded_from_pair(const struct snap_spec *spec, struct bellows *bellows,
+                             struct axi_model *model, const struct bellows *pair,
+                             const struct axi_state *pair_state, const struct folded_limits *limits,
+                             struct axi_state *state, struct error *error);
+
 #endif

@@ -113,6 +113,9 @@ static bool until_natural(struct snap_walk *walk, const struct axi_state *state,
     axial->least = fmin(axial->least, state->force);
     axial->highest = is_unloaded(state) ? fmax(axial->highest, energy) : axial->highest;
   }
+  if (study->spec->pair_count > 1 && is_unloaded(state) && state->negative_free == 0) {
+    walk->status = snap_stairs_note(study, state, walk->error);
+  }
   if (!back && is_unloaded(state) && state->negative_free == 0 &&
       study->body.inverted(study->body.self, state->u) == 0) {
     study->metrics.barrier = axial->highest - compressed->energy - compressed->contact_energy;
@@ -167,7 +170,9 @@ static bool until_stretched(struct snap_walk *walk, const struct axi_state *stat
   if ((point->events & CONTINUATION_LIMIT) && state->pressure > 0.0) {
     note_limit(walk, state, SNAP_TRIGGER, folded && state->pressure > *trigger, trigger);
   }
-  if (walk->context && study->has[SNAP_TRIGGER] && (!folded || state->pressure < 0.0)) {
+  /* Of a row the way on leads through every order in which its pairs may snap. */
+  bool only = walk->context || study->spec->pair_count > 1;
+  if (only && study->has[SNAP_TRIGGER] && (!folded || state->pressure < 0.0)) {
     return false;
   }
   double limit = 2.0 * study->body.length;

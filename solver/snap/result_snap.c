@@ -16,16 +16,17 @@ static json_t *document_of(const struct job_spec *job, const struct snap_study *
                            double cpu_s) {
   bool good = ending == STATUS_OK;
   return json_pack(
-      "{s:s, s:s, s:s, s:s, s:s, s:o, s:[], s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:[], s:o, "
+      "{s:s, s:s, s:s, s:s, s:s, s:o, s:[], s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:[], s:o, "
       "s:{s:s, s:s}}",
       "status", good ? "succeeded" : "diverged", "reason", good ? "" : status_word(ending),
       "message", good ? "" : end->message, "kind", "snap", "name", job->name, "metrics",
       snap_document_metrics(study), "samples", "paths", snap_document_paths(study), "events",
-      snap_document_events(study), "held", snap_document_held(study), "shapes",
-      snap_document_shapes(study), "law", snap_document_law(study), "harmonics",
-      snap_document_harmonics(study), "warnings", snap_document_warnings(study), "artifacts",
-      "statistics", statistics_object(study, wall_s, cpu_s), "provenance", "version",
-      PNEULAB_VERSION, "spec_hash", job->hash);
+      snap_document_events(study), "held", snap_document_held(study), "stairs",
+      snap_document_stairs(study), "shapes", snap_document_shapes(study), "law",
+      snap_document_law(study), "harmonics", snap_document_harmonics(study), "warnings",
+      snap_document_warnings(study), "artifacts", "statistics",
+      statistics_object(study, wall_s, cpu_s), "provenance", "version", PNEULAB_VERSION,
+      "spec_hash", job->hash);
 }
 
 static bool is_fatal(enum status status) {

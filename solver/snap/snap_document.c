@@ -118,6 +118,20 @@ json_t *snap_document_held(const struct snap_study *study) {
   return held;
 }
 
+json_t *snap_document_stairs(const struct snap_study *study) {
+  json_t *stairs = json_array();
+  for (int k = study->spec->pair_count - 1; k >= 0; k--) {
+    const struct snap_stair *stair = &study->stair[k];
+    if (stair->known) {
+      json_t *o = json_pack("{s:i, s:f}", "folded_pairs", k + 1, "h_mm",
+                            h_mm(study, stair->state.elongation));
+      json_set_finite(o, "trigger_pressure_kPa", 1e-3 * stair->trigger);
+      json_array_append_new(stairs, o);
+    }
+  }
+  return stairs;
+}
+
 json_t *snap_document_shapes(const struct snap_study *study) {
   static const char *const names[SNAP_MARKS] = {"natural",        "compressed", "at the trigger",
                                                 "after the snap", "stretched",  "at the release"};

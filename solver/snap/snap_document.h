@@ -11,6 +11,7 @@ json_t *snap_document_metrics(const struct snap_study *study);
 json_t *snap_document_paths(const struct snap_study *study);
 json_t *snap_document_events(const struct snap_study *study);
 json_t *snap_document_held(const struct snap_study *study);
+json_t *snap_document_stairs(const struct snap_study *study);
 json_t *snap_document_shapes(const struct snap_study *study);
 json_t *snap_document_law(const struct snap_study *study);
 json_t *snap_document_harmonics(const struct snap_study *study);

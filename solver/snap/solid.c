@@ -36,10 +36,51 @@ static enum status solid_equilibrium(void *self, const struct axi_load *load, bo
   return axi_equilibrium(solid->model, load, held, options, state, NULL, error);
 }
 
+/* From one pair of an endless row, on the same mesh for a longer body, else on a coarser one. */
+static enum status fold_like_pair(struct solid *solid, const struct folded_limits *limits,
+                                  struct axi_state *state, struct error *error) {
+  struct snap_spec one = *solid->spec;
+  struct snap_body body = {0};
+  struct axi_state folded = {0};
+  bool alone = one.pair_count == 1 && one.ends == SNAP_PERIODIC;
+  one.pair_count = 1;
+  one.ends = SNAP_PERIODIC;
+  one.accuracy = alone ? one.accuracy - 1 : one.accuracy;
+  one.given.angle_factor[0] = one.given.slant_factor[0] = one.given.pet_factor[0] = 1.0;
+  enum status status = snap_derive(&one, error);
+  if (status == STATUS_OK) {
+    status = solid_body_create(&one, &body, error);
+  }
+  if (status == STATUS_OK) {
+    status = snap_body_state(&body, &folded, error);
+  }
+  if (status == STATUS_OK) {
+    status = body.fold(body.self, limits, &folded, error);
+  }
+  if (status == STATUS_OK) {
+    const struct solid *pair = body.self;
+    status = folded_from_pair(solid->spec, &solid->bellows, solid->model, &pair->bellows, &folded,
+                              limits, state, error);
+  }
+  axi_state_destroy(&folded);
+  snap_body_release(&body);
+  return status;
+}
+
 static enum status solid_fold(void *self, const struct folded_limits *limits,
                               struct axi_state *state, struct error *error) {
   struct solid *solid = self;
-  return folded_state(solid->spec, &solid->bellows, solid->model, limits, state, error);
+  const struct snap_spec *spec = solid->spec;
+  bool alone = spec->pair_count == 1 && spec->ends == SNAP_PERIODIC;
+  if (!alone && spec->model == SNAP_SOLID) {
+    return fold_like_pair(solid, limits, state, error);
+  }
+  enum status status = folded_state(spec, &solid->bellows, solid->model, limits, state, error);
+  bool final = status == STATUS_OK || status == STATUS_TIMEOUT || status == STATUS_CANCELLED ||
+               status == STATUS_NO_MEMORY;
+  return final || spec->model == SNAP_SHELL || spec->accuracy == ACCURACY_FAST
+             ? status
+             : fold_like_pair(solid, limits, state, error);
 }
 
 static int solid_inverted(const void *self, const double *u) {

@@ -84,6 +84,11 @@ void snap_study_close(struct snap_study *study) {
       axi_state_destroy(&study->state[m]);
     }
   }
+  for (int k = 0; k < SNAP_PAIRS_MAX; k++) {
+    if (study->stair[k].state.x) {
+      axi_state_destroy(&study->stair[k].state);
+    }
+  }
   snap_body_release(&study->body);
   memset(study, 0, sizeof *study);
 }
@@ -114,19 +119,26 @@ static void look_at_points(struct snap_study *study) {
   }
 }
 
-/* Stable states without load: distinct ones on the paths by force and by pressure. */
+static bool is_state_of_rest(const struct snap_point *p) {
+  return p->pressure == 0.0 && p->force == 0.0 && p->negative_free == 0;
+}
+
+/* Stable states without load: distinct ones on the paths by force and by pressure. A row has more
+ * than a list would take, as many lengths as it has pairs and one more. */
 static void count_stable(struct snap_study *study) {
-  double seen[SNAP_EVENTS_MAX];
+  enum { STATES_MAX = 64 };
+  double seen[STATES_MAX], apart = 1e-3 * study->body.length;
   int count = 0;
-  double apart = 1e-3 * study->body.length;
-  for (int i = 0; i < study->event_count; i++) {
-    const struct snap_event *event = &study->event[i];
-    bool known = event->type != SNAP_STABLE_STATE;
-    for (int k = 0; !known && k < count; k++) {
-      known = fabs(seen[k] - event->elongation) < apart;
-    }
-    if (!known) {
-      seen[count++] = event->elongation;
+  for (int i = 0; i < study->path_count; i++) {
+    for (int k = 0; k < study->path[i].count && count < STATES_MAX; k++) {
+      const struct snap_point *p = &study->path[i].point[k];
+      bool known = !is_state_of_rest(p);
+      for (int j = 0; !known && j < count; j++) {
+        known = fabs(seen[j] - p->elongation) < apart;
+      }
+      if (!known) {
+        seen[count++] = p->elongation;
+      }
     }
   }
   study->metrics.stable_states = count;
@@ -229,6 +241,7 @@ enum status snap_study_run(struct snap_study *study, struct error *error) {
     on = run_part(study, snap_follow_axial, "the path by force", &status, error);
     on = on && run_part(study, snap_follow_pressure, "the path by pressure", &status, error);
   }
+  on = on && run_part(study, snap_follow_stairs, "the stairs of the row", &status, error);
   on = on && run_part(study, snap_follow_vacuum, "the path under vacuum", &status, error);
   on = on && run_part(study, snap_follow_stretched, "the stretched branch", &status, error);
   on = on && run_part(study, snap_follow_held, "the held length", &status, error);

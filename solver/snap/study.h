@@ -61,6 +61,13 @@ enum snap_mark {
   SNAP_MARKS
 };
 
+/* A state that is stable without load, with some pairs folded. */
+struct snap_stair {
+  bool known;
+  struct axi_state state;
+  double trigger; /* first limit point of the pressure from there; NAN: none */
+};
+
 /* NAN where it was not found. SI. */
 struct snap_metrics {
   double trigger_pressure, release_pressure;
@@ -91,7 +98,8 @@ struct snap_study {
   char warning[SNAP_WARNINGS_MAX][SNAP_SENTENCE];
   struct axi_state state[SNAP_MARKS];
   bool has[SNAP_MARKS];
-  long states; /* converged ones */
+  struct snap_stair stair[SNAP_PAIRS_MAX]; /* of a row of pairs: [k] with k + 1 folded */
+  long states;                             /* converged ones */
 };
 
 /* Opens a study of the job; snap_study_close it, also after a failure. */
@@ -158,6 +166,11 @@ enum status snap_follow_pressure(struct snap_study *study, struct error *error);
 enum status snap_follow_vacuum(struct snap_study *study, struct error *error);
 enum status snap_follow_stretched(struct snap_study *study, struct error *error);
 enum status snap_follow_held(struct snap_study *study, struct error *error);
+/* Keeps a state without load as a stair unless one with as many folded pairs is there; then finds
+ * the pressure at which each stair gives way. */
+enum status snap_stairs_note(struct snap_study *study, const struct axi_state *state,
+                             struct error *error);
+enum status snap_follow_stairs(struct snap_study *study, struct error *error);
 enum status snap_follow_laws(struct snap_study *study, struct error *error);
 
 /* Tests a state of a path for waves around the circumference. */

@@ -6,6 +6,7 @@
 
 #include "solver/axi/element.h"
 #include "solver/snap/bellows.h"
+#include "solver/snap/carry.h"
 #include "tests/physics/snap_case.h"
 #include "tests/unit/suite.h"
 
@@ -417,6 +418,45 @@ START_TEST(a_job_arrives_in_si_units) {
 }
 END_TEST
 
+/* What is linear along the axis is carried over exactly: a row stretched as one, whatever the
+ * meshes; and on meshes alike every pair moves as the one, on top of those below. */
+START_TEST(a_pair_is_carried_to_a_row) {
+  struct job_spec one, row;
+  struct bellows from, to;
+  struct error error;
+  double h = 2e-3, elongation = 0.0;
+  build("", ACCURACY_FAST, &one, &from);
+  build(", \"pairs\": 3", ACCURACY_FAST, &row, &to);
+  double *u = calloc(2 * (size_t)from.mesh.node_count, sizeof *u);
+  double *v = calloc(2 * (size_t)to.mesh.node_count, sizeof *v);
+  int rows = from.row_count - 1, columns = from.column_count;
+  for (int i = 0; i < from.mesh.node_count; i++) {
+    double z = from.mesh.position[2 * i + 1];
+    u[2 * i] = 1e-4 * sin(2.0 * M_PI * (i / columns) / rows);
+    u[2 * i + 1] = h * z / from.line.length;
+  }
+  ck_assert_int_eq(carry_pair(&from, u, h, &to, v, &elongation, &error), STATUS_OK);
+  suite_check_near(elongation, 3.0 * h);
+  double base = v[2 * bellows_node(&to, 0, columns / 2) + 1];
+  double low = u[2 * (columns / 2) + 1];
+  for (int i = 0; i < to.mesh.node_count; i++) {
+    int place = i / columns, pair = place / rows, column = i % columns;
+    if (place == to.row_count - 1) {
+      pair--;
+    }
+    int same = bellows_node(&from, place - pair * rows, column);
+    ck_assert_double_eq_tol(v[2 * i], u[2 * same], 1e-9);
+    ck_assert_double_eq_tol(v[2 * i + 1] - base, u[2 * same + 1] - low + pair * h, 1e-9);
+  }
+  free(u);
+  free(v);
+  bellows_release(&from);
+  bellows_release(&to);
+  job_spec_release(&one);
+  job_spec_release(&row);
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("snap: bellows");
   TCase *shapes = tcase_create("shapes"), *jobs = tcase_create("jobs");
@@ -427,6 +467,7 @@ int main(void) {
   tcase_add_test(shapes, a_pair_is_as_long_as_its_parts);
   tcase_add_test(shapes, walls_do_not_overlap);
   tcase_add_test(shapes, ends_are_held_as_asked);
+  tcase_add_test(shapes, a_pair_is_carried_to_a_row);
   tcase_add_test(jobs, a_job_arrives_in_si_units);
   tcase_add_loop_test(jobs, the_jobs_of_the_project_are_of_one_body, 0,
                       (int)(sizeof files / sizeof *files));
