@@ -26,49 +26,66 @@ static void leave_out(struct law_table *table, json_t *warnings) {
   table->count = kept;
 }
 
-enum status computed_law_take(json_t *document, struct law_table *table, struct error *error) {
+enum status computed_law_take(json_t *document, const char *pointer, struct law_table *table,
+                              struct error *error) {
   const json_t *paths = json_object_get(document, "law");
   const char *message = json_string_value(json_object_get(document, "message"));
   enum status status =
-      json_array_size(paths) >= 2 ? law_table_read(paths, "/snap", table, error) : STATUS_OK;
+      json_array_size(paths) >= 2 ? law_table_read(paths, pointer, table, error) : STATUS_OK;
   if (status != STATUS_OK) {
     return status;
   }
   leave_out(table, json_object_get(document, "warnings"));
   return table->count >= 2
              ? STATUS_OK
-             : error_set(error, STATUS_DIVERGED, "/snap",
+             : error_set(error, STATUS_DIVERGED, pointer,
                          "the bellows gives no paths at several pressures, so that its motion "
                          "cannot be computed: %.200s",
                          message && *message ? message : "it has no law");
 }
 
-enum status computed_law(const struct job_spec *spec, FILE *events,
-                         bool (*cancelled)(void *context), json_t **result, struct error *error) {
-  struct bistable_spec *bistable = spec->bistable;
-  *result = NULL;
-  for (int i = 0; i < bistable->law_count; i++) {
-    struct law_spec *law = &bistable->law[i];
-    if (!law->is_snap || law->table.count > 0) {
-      continue;
-    }
-    struct job_spec inner = *spec;
-    struct result_snap_options options = {events, cancelled};
-    enum status ending = STATUS_OK;
-    json_t *document = NULL;
-    inner.kind = JOB_SNAP;
-    inner.bistable = NULL;
-    inner.document = NULL;
-    enum status status = result_snap(&inner, &options, &document, &ending, error);
-    if (status != STATUS_OK) {
-      return status;
-    }
-    status = computed_law_take(document, &law->table, error);
-    if (status != STATUS_OK) {
-      json_decref(document);
-      return status;
-    }
-    *result = document;
+/* Solves one. *document: of the snap job, a new reference, NULL after a failure. */
+static enum status compute(const struct job_spec *spec, struct law_spec *law,
+                           const struct result_snap_options *options, json_t **document,
+                           struct error *error) {
+  struct job_spec inner = *spec;
+  enum status ending = STATUS_OK;
+  inner.kind = JOB_SNAP;
+  inner.snap = law->snap;
+  inner.bistable = NULL;
+  inner.document = NULL;
+  enum status status = result_snap(&inner, options, document, &ending, error);
+  if (status != STATUS_OK) {
+    return status;
   }
-  return STATUS_OK;
+  status = computed_law_take(*document, law->pointer, &law->table, error);
+  if (status != STATUS_OK) {
+    json_decref(*document);
+    *document = NULL;
+  }
+  return status;
+}
+
+enum status computed_law(const struct job_spec *spec, FILE *events,
+                         bool (*cancelled)(void *context), json_t **results, struct error *error) {
+  struct bistable_spec *bistable = spec->bistable;
+  struct result_snap_options options = {events, cancelled};
+  enum status status = STATUS_OK;
+  json_t *all = json_object();
+  for (int i = 0; i < bistable->law_count && status == STATUS_OK; i++) {
+    struct law_spec *law = &bistable->law[i];
+    json_t *document = NULL;
+    if (law->snap && law->table.count == 0) {
+      status = compute(spec, law, &options, &document, error);
+    }
+    if (document && json_object_set_new(all, law->name, document) != 0) {
+      status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for a law");
+    }
+  }
+  if (status != STATUS_OK) {
+    json_decref(all);
+    all = NULL;
+  }
+  *results = all;
+  return status;
 }

@@ -106,7 +106,8 @@ enum status bistable_dynamics(const struct job_spec *spec,
   struct bistable_trajectory t = {0};
   struct bistable_system system = {0};
   struct error end = {.status = STATUS_OK};
-  enum status status = computed_law_take(document, &bistable->law[0].table, &end);
+  enum status status =
+      computed_law_take(document, bistable->law[0].pointer, &bistable->law[0].table, &end);
   if (status == STATUS_OK) {
     bistable->rest_length = rest_length(spec, document);
     status = system_open(bistable, &system, &end);

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "solver/base/clock.h"
 #include "solver/bistable/computed_law.h"
@@ -11,7 +12,7 @@
 
 #define DEGREES (180.0 / 3.14159265358979323846)
 
-enum { KEY_MAX = 40 };
+enum { KEY_MAX = 40, STEPS_MAX = 12 };
 
 static bool tilts(const struct bistable_spec *spec) {
   return spec->actuator_count > 1;
@@ -155,6 +156,24 @@ static double pressure_at(const struct bistable_trajectory *t, double time) {
   return t->moment_count ? t->moment[low].pressure[0] : NAN;
 }
 
+/* The elongation where the pressure is nearest to none, the last such: the length that the actuator
+ * keeps by itself where the set-point passes zero. */
+static void set_least_loaded(json_t *o, const struct bistable_trajectory *t,
+                             const struct plateau *p) {
+  const struct bistable_moment *least = NULL;
+  for (size_t i = 0; i < t->moment_count; i++) {
+    const struct bistable_moment *moment = &t->moment[i];
+    if (moment->time >= p->start && moment->time <= p->end &&
+        (!least || fabs(moment->pressure[0]) <= fabs(least->pressure[0]))) {
+      least = moment;
+    }
+  }
+  if (least) {
+    json_set_finite(o, "h_mm", 1e3 * least->h);
+    json_set_finite(o, "pressure_kPa", 1e-3 * least->pressure[0]);
+  }
+}
+
 static void add_plateau(json_t *plateaus, const struct bistable_trajectory *t,
                         const struct plateau *p) {
   if (!(p->end > p->start)) {
@@ -168,6 +187,7 @@ static void add_plateau(json_t *plateaus, const struct bistable_trajectory *t,
   json_set_finite(o, "last_h_mm", 1e3 * p->last_h);
   json_set_finite(o, "first_pressure_kPa", 1e-3 * pressure_at(t, p->start));
   json_set_finite(o, "last_pressure_kPa", 1e-3 * pressure_at(t, p->end));
+  set_least_loaded(o, t, p);
   json_array_append_new(plateaus, o);
 }
 
@@ -300,6 +320,20 @@ static json_t *laws_array(const struct bistable_system *system) {
   return laws;
 }
 
+/* The steps of the staircase as metrics, as many as fit a table. */
+static void set_steps(json_t *metrics, const json_t *plateaus) {
+  size_t index;
+  json_t *plateau;
+  json_array_foreach((json_t *)plateaus, index, plateau) {
+    json_t *h = json_object_get(plateau, "h_mm");
+    char key[KEY_MAX];
+    snprintf(key, sizeof key, "plateau_%zu_mm", index + 1);
+    if (h && index < STEPS_MAX) {
+      json_object_set(metrics, key, h);
+    }
+  }
+}
+
 json_t *bistable_parts(const struct bistable_system *system, const struct bistable_trajectory *t) {
   json_t *parts = json_object();
   json_object_set_new(parts, "samples", samples_array(system, t));
@@ -310,14 +344,25 @@ json_t *bistable_parts(const struct bistable_system *system, const struct bistab
   return parts;
 }
 
-/* Takes over what a snap job that was solved first has come to: its metrics, and its warnings,
- * which are about the law of the cells. */
-static void add_snap(json_t *document, const json_t *computed) {
-  json_t *warnings = json_object_get(document, "warnings"), *warning;
-  size_t index;
-  json_object_set(document, "snap", json_object_get(computed, "metrics"));
-  json_array_foreach(json_object_get(computed, "warnings"), index, warning) {
-    json_array_append_new(warnings, json_sprintf("snap: %s", json_string_value(warning)));
+/* Takes over what the snap jobs that were solved first have come to: their metrics, beside the laws
+ * and for the job's own also as "snap", and their warnings, which are about the laws of the cells.
+ */
+static void add_computed(json_t *document, const json_t *computed) {
+  json_t *warnings = json_object_get(document, "warnings"), *law, *warning;
+  size_t index, at;
+  json_array_foreach(json_object_get(document, "laws"), index, law) {
+    const char *name = json_string_value(json_object_get(law, "name"));
+    const json_t *snap = json_object_get(computed, name);
+    if (!snap) {
+      continue;
+    }
+    json_object_set(law, "snap", json_object_get(snap, "metrics"));
+    if (strcmp(name, "snap") == 0) {
+      json_object_set(document, "snap", json_object_get(snap, "metrics"));
+    }
+    json_array_foreach(json_object_get(snap, "warnings"), at, warning) {
+      json_array_append_new(warnings, json_sprintf("%s: %s", name, json_string_value(warning)));
+    }
   }
 }
 
@@ -360,14 +405,13 @@ enum status result_bistable(const struct job_spec *spec,
                         "provenance", "version", PNEULAB_VERSION, "spec_hash", spec->hash);
   if (*document) {
     json_object_update_new(*document, bistable_parts(&system, &t));
+    set_steps(json_object_get(*document, "metrics"), json_object_get(*document, "plateaus"));
   }
   if (!*document) {
     status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the result document");
     goto done;
   }
-  if (computed) {
-    add_snap(*document, computed);
-  }
+  add_computed(*document, computed);
 done:
   json_decref(computed);
   bistable_trajectory_release(&t);

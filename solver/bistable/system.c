@@ -67,12 +67,7 @@ enum status system_open(const struct bistable_spec *spec, struct bistable_system
     const struct law_spec *law = &spec->law[i];
     enum status status = law_create(law, &s->law[i], error);
     if (status != STATUS_OK) {
-      struct json_pointer pointer = {.length = 0};
-      json_pointer_key(&pointer, law->is_snap ? "snap" : "laws");
-      if (!law->is_snap) {
-        json_pointer_key(&pointer, law->name);
-      }
-      snprintf(error->pointer, sizeof error->pointer, "%s", pointer.text);
+      snprintf(error->pointer, sizeof error->pointer, "%s", law->pointer);
       return status;
     }
   }

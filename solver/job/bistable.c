@@ -19,6 +19,7 @@ void bistable_spec_destroy(struct bistable_spec *spec) {
   }
   for (int i = 0; i < spec->law_count; i++) {
     law_table_release(&spec->law[i].table);
+    free(spec->law[i].snap);
   }
   for (int i = 0; i < spec->actuator_count; i++) {
     hlpv_input_release(&spec->actuator[i].input);

@@ -13,6 +13,7 @@
 #include <stddef.h>
 #include "solver/base/error.h"
 #include "solver/job/hlpv.h"
+#include "solver/job/snap.h"
 
 enum {
   BISTABLE_LAWS_MAX = 8,
@@ -43,8 +44,10 @@ struct law_table {
  * `volume` + area h. */
 struct law_spec {
   char name[164];
+  char pointer[200]; /* its place in the job, for errors */
   bool is_table;
-  bool is_snap; /* the table comes from the snap job, and is empty until that is solved */
+  struct snap_spec *snap; /* the job that fills the table, which is empty until then; owned, NULL
+                           * where there is none */
   struct law_table table;
   int count;
   double per, c[BISTABLE_COEFFICIENTS_MAX];

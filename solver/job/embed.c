@@ -10,19 +10,23 @@
 #include "solver/base/text.h"
 #include "solver/job/json.h"
 
+#define ANY "*"
+
+enum { WAY_MAX = 2 };
+
 /* A place where a job may name a file. */
 struct slot {
-  const char *group; /* member of the document that holds the key, or a list of such; or NULL */
+  /* Way from the document to what holds the key, NULL where it ends: members, of which lists are
+   * entered by themselves, and ANY for each member of an object. */
+  const char *way[WAY_MAX + 1];
   const char *key;
   bool table; /* a table of data, otherwise a document */
 };
 
-static const struct slot slots[] = {{NULL, "data", true},
-                                    {"measured", "data", true},
-                                    {"input", "data", true},
-                                    {"tables", "data", true},
-                                    {NULL, "base", false},
-                                    {NULL, "snap", false}};
+static const struct slot slots[] = {
+    {{NULL}, "data", true},     {{"measured"}, "data", true},           {{"input"}, "data", true},
+    {{"tables"}, "data", true}, {{"actuators", "input"}, "data", true}, {{NULL}, "base", false},
+    {{NULL}, "snap", false},    {{"laws", ANY}, "snap", false}};
 
 enum { SLOTS = sizeof slots / sizeof *slots, EMBED_LEVELS = 2 };
 
@@ -220,17 +224,30 @@ static enum status look_at(struct embedding *embedding, json_t *parent, const st
   return status;
 }
 
-static enum status look_at_each(struct embedding *embedding, json_t *list, const struct slot *slot,
-                                const char *folder, int level) {
-  size_t index;
-  json_t *parent;
+/* Looks at all places of a slot below `parent`, to which the first `done` steps of the way lead. */
+static enum status go(struct embedding *embedding, json_t *parent, const struct slot *slot,
+                      int done, const char *folder, int level) {
+  const char *step = slot->way[done], *name;
+  bool each = step && strcmp(step, ANY) == 0;
   enum status status = STATUS_OK;
-  json_array_foreach(list, index, parent) {
-    size_t mark = json_pointer_index(&embedding->pointer, index);
-    status = look_at(embedding, parent, slot, folder, level);
-    json_pointer_pop(&embedding->pointer, mark);
-    if (status != STATUS_OK) {
-      break;
+  json_t *value;
+  if (json_is_array(parent)) {
+    size_t index;
+    json_array_foreach(parent, index, value) {
+      size_t mark = json_pointer_index(&embedding->pointer, index);
+      status = status == STATUS_OK ? go(embedding, value, slot, done, folder, level) : status;
+      json_pointer_pop(&embedding->pointer, mark);
+    }
+    return status;
+  }
+  if (!step) {
+    return look_at(embedding, parent, slot, folder, level);
+  }
+  json_object_foreach(parent, name, value) {
+    if (each || strcmp(name, step) == 0) {
+      size_t mark = json_pointer_key(&embedding->pointer, name);
+      status = status == STATUS_OK ? go(embedding, value, slot, done + 1, folder, level) : status;
+      json_pointer_pop(&embedding->pointer, mark);
     }
   }
   return status;
@@ -241,14 +258,7 @@ static enum status walk(struct embedding *embedding, json_t *document, const cha
                         int level) {
   enum status status = STATUS_OK;
   for (size_t i = 0; level < EMBED_LEVELS && i < SLOTS && status == STATUS_OK; i++) {
-    const char *group = slots[i].group;
-    json_t *parent = group ? json_object_get(document, group) : document;
-    size_t mark = group ? json_pointer_key(&embedding->pointer, group) : 0;
-    status = json_is_array(parent) ? look_at_each(embedding, parent, &slots[i], folder, level)
-                                   : look_at(embedding, parent, &slots[i], folder, level);
-    if (group) {
-      json_pointer_pop(&embedding->pointer, mark);
-    }
+    status = go(embedding, document, &slots[i], 0, folder, level);
   }
   return status;
 }

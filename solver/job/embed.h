@@ -1,7 +1,8 @@
 /* Files that a job names, { "file": "curve.csv" }, and their content in their place.
  *
- * A job may name a file where a table ("data", also that of "measured", "input" and each of
- * "tables"), the base of a study ("base") or the snap job of a bistable one ("snap") is due.
+ * A job may name a file where a table ("data", also that of "measured", "input", each of
+ * "tables" and the "input" of each of "actuators"), the base of a study ("base") or the snap job
+ * of a bistable one ("snap", also that of each of "laws") is due.
  * Whoever has the job's file at hand embeds the content before the job is read, so that everything
  * after it, the hash included, depends on the content alone:
  *   table   { "file": "curve.csv" }  becomes  { "csv": "text of the file" }

@@ -316,15 +316,30 @@ static enum status fill_object(struct walk *walk, const json_t *properties, json
   return STATUS_OK;
 }
 
+/* Members that have no names of their own in the schema. */
+static enum status fill_others(struct walk *walk, const json_t *node, json_t *value) {
+  const json_t *properties = json_object_get(node, "properties");
+  const json_t *others = json_object_get(node, "additionalProperties");
+  const char *key;
+  json_t *member;
+  enum status status = STATUS_OK;
+  json_object_foreach(value, key, member) {
+    if (json_is_object(others) && !json_object_get(properties, key) && status == STATUS_OK) {
+      status = fill_node(walk, others, member);
+    }
+  }
+  return status;
+}
+
 static enum status fill_node(struct walk *walk, const json_t *node, json_t *value) {
   node = schema_resolve(walk->schema, node);
   const json_t *branches = json_object_get(node, "oneOf");
   if (branches) {
     node = schema_choose_branch(walk, branches, value);
   }
-  const json_t *properties = json_object_get(node, "properties");
-  if (properties && json_is_object(value)) {
-    return fill_object(walk, properties, value);
+  if (json_is_object(value)) {
+    enum status status = fill_object(walk, json_object_get(node, "properties"), value);
+    return status == STATUS_OK ? fill_others(walk, node, value) : status;
   }
   const json_t *items = json_object_get(node, "items");
   size_t index;

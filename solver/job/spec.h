@@ -263,8 +263,7 @@ struct job_spec {
   struct identify_spec *identify; /* likewise of an identify job */
   struct snap_spec *snap;         /* of a snap job, else NULL; likewise */
   struct bistable_spec *bistable; /* of a bistable job, else NULL; likewise. Also of a snap
-                                   * job with dynamics. One whose law comes
-                                   * from a snap job has that in `snap` */
+                                   * job with dynamics */
   bool contact;
   struct plane_spec plane[PLANES_MAX];
   int plane_count;

@@ -16,6 +16,24 @@ enum { WHERE_MAX = 200, QUOTED_MAX = 60 };
 
 /* ---- laws --------------------------------------------------------------------------------- */
 
+/* A law that the snap job at `pointer` computes: its own reader fills what is its own, and this job
+ * keeps kind, name and time limit. */
+static enum status read_snap_law(const struct reader *reader, const char *name, const json_t *snap,
+                                 const char *pointer, struct law_spec *law) {
+  char where[WHERE_MAX];
+  struct job_spec inner = {.kind = JOB_SNAP};
+  enum status status = reader_snap(reader, snap, &inner);
+  law->snap = inner.snap;
+  reader_copy(law->name, sizeof law->name, name);
+  reader_copy(law->pointer, sizeof law->pointer, pointer);
+  law->is_table = true;
+  if (status != STATUS_OK) {
+    snprintf(where, sizeof where, "%.100s%.90s", pointer, reader->error->pointer);
+    reader_copy(reader->error->pointer, sizeof reader->error->pointer, where);
+  }
+  return status;
+}
+
 static enum status read_closed_form(const struct reader *reader, const json_t *value,
                                     const char *pointer, struct law_spec *law) {
   const json_t *coefficients = json_object_get(value, "coefficients");
@@ -48,25 +66,34 @@ static enum status read_closed_form(const struct reader *reader, const json_t *v
 
 static enum status read_law(const struct reader *reader, const char *name, const json_t *value,
                             struct law_spec *law) {
-  const json_t *table = json_object_get(value, "table");
+  const json_t *table = json_object_get(value, "table"), *snap = json_object_get(value, "snap");
+  int ways = (table != NULL) + (snap != NULL) + (json_object_get(value, "coefficients") != NULL);
   static const char *const closed[] = {"coefficients", "per", "area", "volume", "range"};
   struct json_pointer pointer = {.length = 0};
   char where[WHERE_MAX + 10];
   json_pointer_key(&pointer, "laws");
   json_pointer_key(&pointer, name);
   reader_copy(law->name, sizeof law->name, name);
+  reader_copy(law->pointer, sizeof law->pointer, pointer.text);
   law->is_table = table != NULL;
-  if (!table == !json_object_get(value, "coefficients")) {
-    return error_set(reader->error, STATUS_INVALID, pointer.text,
-                     "a law has either \"table\" or \"coefficients\"; for example { \"per\": "
-                     "\"mm\", \"coefficients\": [\"0 N\", \"5 N\"], \"area\": \"8 cm2\" }");
+  if (ways != 1) {
+    return error_set(
+        reader->error, STATUS_INVALID, pointer.text,
+        "a law has one of \"table\", \"snap\" and \"coefficients\"; for example { "
+        "\"per\": \"mm\", \"coefficients\": [\"0 N\", \"5 N\"], \"area\": \"8 cm2\" }");
   }
-  for (size_t i = 0; table && i < sizeof closed / sizeof *closed; i++) {
+  for (size_t i = 0; (table || snap) && i < sizeof closed / sizeof *closed; i++) {
     if (json_object_get(value, closed[i])) {
       json_pointer_key(&pointer, closed[i]);
-      return error_set(reader->error, STATUS_INVALID, pointer.text,
-                       "\"%s\" belongs to a law in closed form: a table says it itself", closed[i]);
+      return error_set(
+          reader->error, STATUS_INVALID, pointer.text,
+          "\"%s\" belongs to a law in closed form: a table or a snap job says it itself",
+          closed[i]);
     }
+  }
+  if (snap) {
+    json_pointer_key(&pointer, "snap");
+    return read_snap_law(reader, name, snap, pointer.text, law);
   }
   snprintf(where, sizeof where, "%.180s/table", pointer.text);
   return table ? law_table_read(table, where, &law->table, reader->error)
@@ -78,7 +105,12 @@ static enum status read_laws(const struct reader *reader, const json_t *laws,
   const char *name;
   json_t *value;
   enum status status = STATUS_OK;
+  bool taken = spec->law_count > 0;
   json_object_foreach((json_t *)laws, name, value) {
+    if (taken && strcmp(name, "snap") == 0) {
+      return error_set(reader->error, STATUS_INVALID, "/laws/snap",
+                       "the law of the job's own \"snap\" has this name; for example \"thin\"");
+    }
     if (spec->law_count == BISTABLE_LAWS_MAX) {
       return error_set(reader->error, STATUS_INVALID, "/laws",
                        "at most %d laws are allowed, that of a snap job included",
@@ -90,25 +122,6 @@ static enum status read_laws(const struct reader *reader, const json_t *laws,
     }
   }
   return STATUS_OK;
-}
-
-/* The snap job: its own reader fills what is its own, and this job keeps kind, name and time limit.
- */
-static enum status read_snap_law(const struct reader *reader, const json_t *snap,
-                                 struct job_spec *job) {
-  struct law_spec *law = &job->bistable->law[job->bistable->law_count++];
-  char where[WHERE_MAX];
-  struct job_spec inner = {.kind = JOB_SNAP};
-  enum status status = reader_snap(reader, snap, &inner);
-  job->snap = inner.snap;
-  reader_copy(law->name, sizeof law->name, "snap");
-  law->is_table = true;
-  law->is_snap = true;
-  if (status != STATUS_OK) {
-    snprintf(where, sizeof where, "/snap%.180s", reader->error->pointer);
-    reader_copy(reader->error->pointer, sizeof reader->error->pointer, where);
-  }
-  return status;
 }
 
 /* ---- supplies ----------------------------------------------------------------------------- */
@@ -344,7 +357,9 @@ enum status reader_bistable(const struct reader *reader, const json_t *document,
   job->bistable = spec;
   reader_copy(job->name, sizeof job->name, json_string_value(json_object_get(document, "name")));
   job->timeout_s = reader_member(reader, document, "timeout", "s", 0.0);
-  enum status status = snap ? read_snap_law(reader, snap, job) : STATUS_OK;
+  enum status status =
+      snap ? read_snap_law(reader, "snap", snap, "/snap", &spec->law[spec->law_count++])
+           : STATUS_OK;
   if (status == STATUS_OK) {
     status = read_laws(reader, json_object_get(document, "laws"), spec);
   }

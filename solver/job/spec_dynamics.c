@@ -72,7 +72,7 @@ enum status reader_snap_dynamics(const struct reader *reader, const json_t *valu
   job->bistable = spec;
   spec->law_count = 1;
   spec->law[0].is_table = true;
-  spec->law[0].is_snap = true;
+  reader_copy(spec->law[0].pointer, sizeof spec->law[0].pointer, "/load/law");
   reader_copy(spec->law[0].name, sizeof spec->law[0].name, "snap");
   add_pairs(reader, value, spec);
   spec->plate_mass = reader_member(reader, value, "plate_mass", "kg", 0.0);

@@ -8,9 +8,12 @@ grep -aqE '__(asan|tsan)_init' "$BIN/pneulab-solve" && limit=0
 start_daemon --solver "$BIN/pneulab-solve" --memory-limit "$limit"
 jobs=$(dirname "$0")/../../jobs/beast
 
-fetch POST /api/v1/jobs:validate --data-binary "@$jobs/push-power.json"
+# With a law in closed form: that of the job comes from finite elements.
+push=$(jq 'del(.snap) | .laws = {snap: {per: "mm", coefficients: ["0 N", "33.1 N", "-11.27 N", "0.87 N"],
+  area: "8.1 cm2", volume: "9 ml", range: ["-3 mm", "14 mm"]}}' "$jobs/push-power.json")
+fetch POST /api/v1/jobs:validate --data-binary "$push"
 check "the push is valid" true "$(field .valid)"
-fetch POST /api/v1/jobs -H 'Prefer: wait=60' --data-binary "@$jobs/push-power.json"
+fetch POST /api/v1/jobs -H 'Prefer: wait=60' --data-binary "$push"
 id=$(field .id)
 check "it succeeds" succeeded "$(wait_state "$id" 'succeeded|failed|timed_out' 120)"
 fetch GET "/api/v1/jobs/$id"
@@ -25,7 +28,6 @@ check "so is the speed of the snap" 1 "$(sql "select count(*) from metric where 
 
 fetch POST /api/v1/jobs --data-binary "@$jobs/bistable-pair.json"
 check "a job that names a file is refused" "422 /snap/file" "$CODE $(field .pointer)"
-push=$(cat "$jobs/push-power.json")
 fetch POST /api/v1/jobs --data-binary "${push/\"mass\": \"30 g\"/\"mass\": \"-30 g\"}"
 check "so is a negative mass" "422 /plate/mass" "$CODE $(field .pointer)"
 fetch POST /api/v1/jobs --data-binary "${push/\"20 ml\"/\"-20 ml\"}"

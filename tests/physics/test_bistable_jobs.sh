@@ -22,9 +22,12 @@ metric() {
   jq -r ".metrics.$2" "$work/$1.json"
 }
 
-# Where a job has its law computed, that of another one, in closed form, is put in its place.
-closed=$(jq -c '.laws' "$source/jobs/beast/push-power.json")
-closed="if .snap then del(.snap) | .laws = {snap: $closed.pair} else . end"
+# Finite elements take half a minute for a law, so that cubics are put in their place: 34.9 kPa make
+# the thick one snap, 22.0 kPa the thin one.
+rest='"per": "mm", "area": "8.1 cm2", "volume": "9 ml", "range": ["-3 mm", "14 mm"]'
+thick="{$rest, \"coefficients\": [\"0 N\", \"33.1 N\", \"-11.27 N\", \"0.87 N\"]}"
+thin="{$rest, \"coefficients\": [\"0 N\", \"20.9 N\", \"-7.10 N\", \"0.548 N\"]}"
+closed="if .snap then del(.snap) | .laws = {snap: $thick} else .laws = {thick: $thick, thin: $thin} end"
 for name in bistable-pair bistable-three-pairs bistable-two-lengths module-two-parallel push-power push-gentle; do
   jq "$closed" "$source/jobs/beast/$name.json" > "$work/job.json"
   "${BIN:-.}/pneulab-solve" "$work/job.json" > "$work/$name.json"
@@ -36,13 +39,21 @@ holds bistable-pair "one snap, above the published 1.5 m/s as nothing limits the
   '.metrics.snap_count == 1 and .metrics.snap_speed_m_s > 1.5 and .metrics.pressure_drop_kPa < 1'
 holds bistable-three-pairs "the pressure falls with every snap" \
   '[.events[] | select(.type == "snap") | .least_pressure_kPa < .trigger_pressure_kPa - 3] | length == 3 and all'
-holds bistable-two-lengths "a staircase up and down" \
-  '.metrics.snap_count == 3 and .metrics.return_count == 3 and (.plateaus | length) >= 5
-   and ([.plateaus[].stretched_cells] | max == 3)'
+holds bistable-two-lengths "a staircase: the thin pair, the thick one, the stiff one" \
+  '[.events[] | select(.type == "snap") | .cell] == [1, 2, 3] and .metrics.return_count == 3'
+holds bistable-two-lengths "lengths kept without pressure, one travel (8.45 mm) more each" \
+  '[.plateaus[:4][] | [.stretched_cells, .pressure_kPa, .h_mm]]
+   | map((.[1] | fabs) < 0.5 and (.[2] - 8.45 * .[0] | fabs) < 0.3) | length == 4 and all'
+holds bistable-two-lengths "the steps are metrics" \
+  '[.metrics | .plateau_1_mm, .plateau_2_mm, .plateau_3_mm, .plateau_4_mm] == [.plateaus[:4][].h_mm]'
 holds module-two-parallel "both ways alike" \
   '.metrics | (.bending_angle_deg + .least_bending_angle_deg | fabs) < 0.01 and .bending_angle_deg > 10'
-holds module-two-parallel "together it does not bend" \
-  '[.samples[] | select(.time_s < 4.9) | .bending_angle_deg | fabs] | max < 0.1'
+holds module-two-parallel "one alone stays stretched, so that it stays bent without pressure" \
+  '.samples[] | select(.time_s == 3.4) | (.pressure_kPa | fabs) < 0.5 and .bending_angle_deg < -10'
+holds module-two-parallel "with both it is straight and longer" \
+  '[.samples[] | select(.time_s == 3.4 or .time_s == 7)] | (.[1].bending_angle_deg | fabs) < 1
+   and .[1].h_mm > 1.5 * .[0].h_mm'
+holds module-two-parallel "vacuum returns all" '.metrics | .snap_count == 12 and .return_count == 12'
 awk -v a="$(metric push-power load_speed_m_s)" -v b="$(metric push-gentle load_speed_m_s)" \
   'BEGIN { exit !(a > 2 * b && b > 0) }' || { failed=$((failed + 1)); echo "FAILED: the power push is no faster"; }
 echo "$passed passed, $failed failed"

@@ -100,6 +100,10 @@ START_TEST(tables_become_text) {
   document = embed("{\"input\":{\"data\":{\"file\":\"a.csv\"},\"between\":\"linear\"}}", NULL);
   ck_assert_str_eq(string_at(document, "input", "data", "csv"), "x,y\r\n1,2\r\n");
   json_decref(document);
+  document = embed("{\"actuators\":[{},{\"input\":{\"data\":{\"file\":\"a.csv\"}}}]}", NULL);
+  const json_t *second = json_array_get(json_object_get(document, "actuators"), 1);
+  ck_assert_str_eq(string_at(second, "input", "data", "csv"), "x,y\r\n1,2\r\n");
+  json_decref(document);
   document = embed("{\"data\":{\"file\":\"latin.csv\"}}", NULL);
   ck_assert_str_eq(string_at(document, "data", "csv", NULL), "x (\xC2\xB5m)\n");
   json_decref(document);
@@ -114,6 +118,18 @@ START_TEST(a_base_becomes_its_document_with_its_own_files) {
   json_decref(document);
   document = embed("{\"base\":{\"data\":{\"file\":\"a.csv\"}}}", NULL);
   ck_assert_str_eq(string_at(document, "base", "data", "csv"), "x,y\r\n1,2\r\n");
+  json_decref(document);
+}
+END_TEST
+
+START_TEST(a_law_becomes_its_snap_job) {
+  json_t *document = embed("{\"snap\":{\"file\":\"sub/base.json\"},\"laws\":{\"b\":{\"snap\":"
+                           "{\"file\":\"sub/base.json\"}},\"c\":{\"table\":[]}}}",
+                           NULL);
+  const json_t *laws = json_object_get(document, "laws");
+  ck_assert_str_eq(string_at(document, "snap", "kind", NULL), "response");
+  ck_assert_str_eq(string_at(laws, "b", "snap", "kind"), "response");
+  ck_assert_uint_eq(json_object_size(json_object_get(laws, "c")), 1);
   json_decref(document);
 }
 END_TEST
@@ -141,6 +157,10 @@ static const struct {
     {"{\"data\":{\"file\":\"a.csv\",\"csv\":\"\"}}", STATUS_INVALID, "/data/file", "beside it", 1},
     {"{\"base\":{\"file\":\"a.csv\"}}", STATUS_INVALID, "/base/file", "no job document", 1},
     {"{\"base\":{\"file\":\"bad.json\"}}", STATUS_SYNTAX, "/base/file", "line 2 of that file", 0},
+    {"{\"actuators\":[{},{\"input\":{\"data\":{\"file\":\"b.csv\"}}}]}", STATUS_INVALID,
+     "/actuators/1/input/data/file", "No such file", 1},
+    {"{\"laws\":{\"a\":{\"snap\":{\"file\":\"a.csv\"}}}}", STATUS_INVALID, "/laws/a/snap/file",
+     "no job document", 1},
     {"{\"data\":", STATUS_SYNTAX, "", "", 1},
 };
 
@@ -162,6 +182,7 @@ START_TEST(a_reader_of_jobs_opens_no_files) {
       {"{\"kind\":\"response\",\"measured\":{\"data\":{\"file\":\"a.csv\"}}}",
        "/measured/data/file"},
       {"{\"base\":{\"measured\":{\"data\":{\"file\":1}}}}", "/base/measured/data/file"},
+      {"{\"laws\":{\"a\":{\"snap\":{\"file\":\"x\"}}}}", "/laws/a/snap/file"},
       {"{\"base\":{\"file\":\"x\"}}", "/base/file"}};
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
     struct job_spec spec;
@@ -182,6 +203,7 @@ int main(void) {
   tcase_add_test(tcase, text_without_files_is_left_as_it_is);
   tcase_add_test(tcase, tables_become_text);
   tcase_add_test(tcase, a_base_becomes_its_document_with_its_own_files);
+  tcase_add_test(tcase, a_law_becomes_its_snap_job);
   tcase_add_test(tcase, a_base_that_names_itself_ends);
   tcase_add_loop_test(tcase, refuses, 0, sizeof refusals / sizeof *refusals);
   tcase_add_test(tcase, a_reader_of_jobs_opens_no_files);

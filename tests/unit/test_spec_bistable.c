@@ -79,8 +79,7 @@ START_TEST(a_law_may_be_computed) {
                  &error) == STATUS_OK,
       "%s: %s", error.pointer, error.message);
   ck_assert_int_eq(spec.kind, JOB_BISTABLE);
-  ck_assert_ptr_nonnull(spec.snap);
-  ck_assert(spec.bistable->law[0].is_snap);
+  ck_assert_ptr_nonnull(spec.bistable->law[0].snap);
   job_spec_release(&spec);
   ck_assert_int_ne(
       read_parts("\"snap\": {\"kind\": \"snap\", \"actuator\": {\"family\": "
@@ -91,6 +90,36 @@ START_TEST(a_law_may_be_computed) {
                  "[{\"cells\": [{\"law\": \"snap\", \"mass\": \"1 g\"}]}]", NULL, &spec, &error),
       STATUS_OK);
   ck_assert_msg(strncmp(error.pointer, "/snap/actuator", 14) == 0, "%s", error.pointer);
+}
+END_TEST
+
+#define SNAP(ANGLE)                                                                                \
+  "\"snap\": {\"kind\": \"snap\", \"actuator\": {\"family\": \"frustum-bellows\", "                \
+  "\"outer_diameter\": \"40 mm\", \"wall\": \"2 mm\", \"snapping_angle\": \"" ANGLE                \
+  " deg\", \"supporting_angle\": \"55 deg\", \"pet_thickness\": \"0.25 mm\", \"snapping_slant\": " \
+  "\"5 mm\"}, \"silicone\": {\"model\": \"neo-hooke\", \"mu\": \"0.19 MPa\"}}"
+
+/* Several laws, each of a geometry of its own, complete with defaults. */
+START_TEST(laws_may_be_computed_from_several_geometries) {
+  static const char cells[] = "[{\"cells\": [{\"law\": \"b\", \"mass\": \"1 g\"}]}]";
+  struct job_spec spec;
+  struct error error;
+  ck_assert_msg(read_parts("\"laws\": {\"a\": {" SNAP("40") "}, \"b\": {" SNAP("38") "}},", cells,
+                           NULL, &spec, &error) == STATUS_OK,
+                "%s: %s", error.pointer, error.message);
+  const struct bistable_spec *b = spec.bistable;
+  ck_assert_int_eq(b->law_count, 2);
+  ck_assert_double_gt(b->law[0].snap->given.snapping_angle, b->law[1].snap->given.snapping_angle);
+  ck_assert(b->law[1].snap->contact);
+  suite_check_near(b->law[1].snap->pressure_to, 60e3);
+  job_spec_release(&spec);
+  ck_assert_int_ne(read_parts("\"laws\": {\"b\": {" SNAP("70") "}},", cells, NULL, &spec, &error),
+                   STATUS_OK);
+  ck_assert_msg(strncmp(error.pointer, "/laws/b/snap/actuator", 21) == 0, "%s", error.pointer);
+  ck_assert_int_eq(read_parts(SNAP("40") ", \"laws\": {\"snap\": {" SNAP("40") "}},", cells, NULL,
+                              &spec, &error),
+                   STATUS_INVALID);
+  ck_assert_str_eq(error.pointer, "/laws/snap");
 }
 END_TEST
 
@@ -189,7 +218,7 @@ static const struct {
      "s\", \"2 kPa\"]]}}]",
      NULL, "/actuators/0/input/hold/0/0", "must be 0 s"},
     {"", NULL, NULL, "/actuators/0/cells/0/law", "no law \"pair\""},
-    {"\"laws\": {\"pair\": {}},", NULL, NULL, "/laws/pair", "either \"table\" or"},
+    {"\"laws\": {\"pair\": {}},", NULL, NULL, "/laws/pair", "one of \"table\""},
     {"\"laws\": {\"pair\": {\"per\": \"s\", \"coefficients\": [\"0 N\", \"1 N\"]}},", NULL, NULL,
      "/laws/pair/per", "no unit of the elongation"},
     {"\"laws\": {\"pair\": {\"per\": \"mm\", \"coefficients\": [\"0 N\", \"1 N\"], \"range\": [\"2 "
@@ -254,6 +283,7 @@ int main(void) {
   TCase *tcase = tcase_create("all");
   tcase_add_test(tcase, a_model_arrives_in_si_units);
   tcase_add_test(tcase, a_law_may_be_computed);
+  tcase_add_test(tcase, laws_may_be_computed_from_several_geometries);
   tcase_add_loop_test(tcase, refuses, 0, sizeof refusals / sizeof *refusals);
   tcase_add_loop_test(tcase, a_snap_job_may_ask_for_its_motion, 0, sizeof snaps / sizeof *snaps);
   tcase_add_test(tcase, no_number_is_refused);
