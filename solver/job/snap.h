@@ -70,6 +70,7 @@ struct snap_spec {
   int harmonics_to; /* 0: no test */
   struct snap_calibrate calibrate;
   enum accuracy accuracy;
+  double element_length; /* relative to that of the accuracy; 1 unless a study tries others */
 };
 
 /* Radius of the middle line of the hinge between a snapping shell of base angle `snapping` and a

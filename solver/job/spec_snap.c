@@ -207,6 +207,7 @@ static void read_options(const json_t *document, struct snap_spec *spec) {
   spec->model = has_word(document, "model", "shell") ? SNAP_SHELL : SNAP_SOLID;
   spec->contact = json_is_true(json_object_get(document, "contact"));
   spec->harmonics_to = reader_count(json_object_get(document, "harmonics"), "to", 0);
+  spec->element_length = 1.0;
   spec->accuracy = has_word(document, "accuracy", "fast")   ? ACCURACY_FAST
                    : has_word(document, "accuracy", "fine") ? ACCURACY_FINE
                                                             : ACCURACY_STANDARD;

@@ -29,24 +29,76 @@ static json_t *document_of(const struct job_spec *job, const struct snap_study *
       "spec_hash", job->hash);
 }
 
+/* ---- computing ---------------------------------------------------------------------------- */
+
 static bool is_fatal(enum status status) {
   return status == STATUS_NO_MEMORY || status == STATUS_INTERNAL;
 }
 
-/* Calibration first, where one is asked for, then everything with the number that it found. */
+static enum status open_study(const struct snap_spec *spec, const struct calibrate_options *options,
+                              struct snap_study *study, struct error *end) {
+  enum status status = snap_study_open(spec, study, end);
+  study->deadline_s = options->deadline_s;
+  study->cancelled = options->cancelled;
+  study->progress = options->progress;
+  return status;
+}
+
+/* Where walls touch, the facets of their surfaces make kinks that a path may not get around; other
+ * elements have them elsewhere. Relative lengths of elements to try, none far from that of the
+ * accuracy. */
+static const double element_length[] = {0.87, 1.13, 0.77};
+enum { LENGTHS = sizeof element_length / sizeof *element_length };
+
+static bool is_lost(enum status status) {
+  return status == STATUS_DIVERGED || status == STATUS_INVERTED || status == STATUS_STEP_MINIMUM;
+}
+
+/* Takes the study of the first mesh on which every path is found, or that tells that no compressed
+ * state is stable where none was found; without one, or without time, the study stays as it is. */
+static void try_meshes(struct snap_spec *spec, const struct calibrate_options *options,
+                       struct snap_study *study, enum status *ending, struct error *end) {
+  enum status one = *ending;
+  for (int k = 0; k < LENGTHS && is_lost(*ending) && one != STATUS_TIMEOUT; k++) {
+    struct snap_study other;
+    struct error local = {.status = STATUS_OK};
+    spec->element_length = element_length[k];
+    one = open_study(spec, options, &other, &local);
+    one = one == STATUS_OK ? snap_study_run(&other, &local) : one;
+    bool decided =
+        one == STATUS_OK || (one == STATUS_UNSTABLE_PATH && !study->has[SNAP_COMPRESSED]);
+    if (decided) {
+      snap_study_warn(&other,
+                      "computed with elements %.2f times as long as the accuracy asks for, after "
+                      "those had ended with: %.160s",
+                      element_length[k], end->message);
+      struct snap_study first = *study;
+      *study = other;
+      other = first;
+    }
+    if (decided || is_fatal(one) || one == STATUS_CANCELLED) {
+      *ending = one;
+      *end = local;
+    }
+    snap_study_close(&other);
+  }
+}
+
+/* Calibration first, where one is asked for, then everything with the number that it found: it is
+ * of one mesh, so that no other one is tried. */
 static enum status compute(struct snap_spec *spec, const struct calibrate_options *options,
                            struct snap_study *study, struct calibrate_result *found,
                            enum status *ending, struct error *end) {
   *ending = spec->calibrate.asked ? calibrate(spec, options, found, end) : STATUS_OK;
-  enum status status = snap_study_open(spec, study, end);
+  enum status status = open_study(spec, options, study, end);
   if (status != STATUS_OK) {
     return status;
   }
-  study->deadline_s = options->deadline_s;
-  study->cancelled = options->cancelled;
-  study->progress = options->progress;
   if (*ending == STATUS_OK) {
     *ending = snap_study_run(study, end);
+  }
+  if (!spec->calibrate.asked) {
+    try_meshes(spec, options, study, ending, end);
   }
   return STATUS_OK;
 }

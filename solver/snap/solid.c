@@ -245,6 +245,7 @@ enum status solid_body_create(const struct snap_spec *spec, struct snap_body *bo
     fineness = (struct bellows_fineness){1, 1, longer * fineness.length};
     body->harmonics = NULL; /* rows move in the meridian plane alone */
   }
+  fineness.length *= spec->element_length;
   enum status status = bellows_create(spec, &fineness, &solid->bellows, error);
   struct axi_model_options options = {.contact = spec->contact && !shell,
                                       .skin = shell ? 0.0 : skin * spec->wall,

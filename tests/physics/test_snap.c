@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "solver/snap/calibrate.h"
+#include "solver/snap/result_snap.h"
 #include "solver/snap/study.h"
 #include "tests/physics/snap_case.h"
 #include "tests/unit/suite.h"
@@ -333,9 +334,64 @@ START_TEST(a_body_with_one_state_says_so) {
 }
 END_TEST
 
+static double number(const json_t *object, const char *key) {
+  const json_t *value = json_object_get(object, key);
+  ck_assert_msg(json_is_number(value), "no %s", key);
+  return json_number_value(value);
+}
+
+/* Work of the loads along a path of a result, by trapezia, mJ. */
+static double work_of(const json_t *points) {
+  double sum = 0.0;
+  for (size_t i = 1; i < json_array_size(points); i++) {
+    const json_t *p = json_array_get(points, i - 1), *q = json_array_get(points, i);
+    sum += 0.5 * (number(p, "force_N") + number(q, "force_N")) *
+               (number(q, "h_mm") - number(p, "h_mm")) +
+           0.5e-3 * (number(p, "pressure_kPa") + number(q, "pressure_kPa")) *
+               (number(q, "volume_mm3") - number(p, "volume_mm3"));
+  }
+  return sum;
+}
+
+/* The walls of this one touch, and on the mesh of its accuracy a path ends at a kink between two
+ * facets: whatever mesh comes to the end, loads and energy agree along its paths. */
+START_TEST(a_path_that_is_lost_is_found_on_another_mesh) {
+  static const char hard[] =
+      "{\"kind\": \"snap\", \"actuator\": {\"family\": \"frustum-bellows\", \"outer_diameter\": "
+      "\"52.183 mm\", \"wall\": \"2.45 mm\", \"snapping_angle\": \"47.225 deg\", "
+      "\"supporting_angle\": \"52.359 deg\", \"snapping_slant\": \"6.695 mm\", \"hinge_length\": "
+      "\"3.764 mm\", \"pet_thickness\": \"0.2509 mm\"}, \"silicone\": {\"model\": \"neo-hooke\", "
+      "\"mu\": \"0.176 MPa\"}, \"pet\": {\"modulus\": \"3 GPa\"}, \"load\": {\"pressure_to\": "
+      "\"60 kPa\", \"vacuum_to\": \"0 kPa\"}, \"accuracy\": \"fast\", \"harmonics\": {\"to\": "
+      "0}}";
+  struct job_spec other;
+  struct error error = {.status = STATUS_OK};
+  struct result_snap_options options = {.events = NULL};
+  json_t *document = NULL, *path = NULL;
+  enum status ending;
+  size_t i;
+  ck_assert_int_eq(job_spec_read(hard, strlen(hard), &other, &error), STATUS_OK);
+  ck_assert_int_eq(result_snap(&other, &options, &document, &ending, &error), STATUS_OK);
+  ck_assert_msg(ending == STATUS_OK, "%s", json_string_value(json_object_get(document, "message")));
+  const json_t *metrics = json_object_get(document, "metrics");
+  ck_assert_double_gt(number(metrics, "trigger_pressure_kPa"), 0.0);
+  ck_assert_int_eq((int)number(metrics, "stable_states"), 2);
+  json_array_foreach(json_object_get(document, "paths"), i, path) {
+    const json_t *points = json_object_get(path, "points");
+    double from = number(json_array_get(points, 0), "energy_mJ");
+    double to = number(json_array_get(points, json_array_size(points) - 1), "energy_mJ");
+    ck_assert_double_eq_tol(work_of(points), to - from,
+                            0.03 * number(metrics, "energy_barrier_mJ"));
+  }
+  json_decref(document);
+  job_spec_release(&other);
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("snap: paths");
   TCase *paths = tcase_create("paths"), *jobs = tcase_create("jobs");
+  TCase *meshes = tcase_create("meshes");
   tcase_set_timeout(paths, 120);
   tcase_add_unchecked_fixture(paths, setup, teardown);
   tcase_add_test(paths, the_work_of_the_loads_is_stored);
@@ -349,8 +405,11 @@ int main(void) {
   tcase_add_test(jobs, a_calibration_meets_its_target);
   tcase_add_test(jobs, it_stops_when_told);
   tcase_add_test(jobs, a_body_with_one_state_says_so);
+  tcase_add_test(meshes, a_path_that_is_lost_is_found_on_another_mesh);
+  tcase_set_timeout(meshes, 300);
   tcase_set_timeout(jobs, 120);
   suite_add_tcase(suite, paths);
   suite_add_tcase(suite, jobs);
+  suite_add_tcase(suite, meshes);
   return suite_run(suite);
 }
