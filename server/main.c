@@ -57,7 +57,7 @@ static enum status parts_open(const struct options *options, struct parts *parts
   int64_t recovered = 0;
   service->data = options->data;
   service->loopback =
-      guard_host_is_loopback(options->address) || strcmp(options->address, "::1") == 0;
+      guard_host_is_loopback(options->listen.host) || strcmp(options->listen.host, "::1") == 0;
   service->started_ms = clock_monotonic_ms();
   enum status status = data_lock(options->data, &parts->lock, error);
   if (status == STATUS_OK) {
@@ -141,8 +141,8 @@ static int serve(const struct options *options) {
   if (status != STATUS_OK) {
     fprintf(stderr, "pneulabd: %s\n", error.message);
   } else {
-    bool six = strchr(options->address, ':') != NULL;
-    printf("listening on http://%s%s%s:%u\n", six ? "[" : "", options->address, six ? "]" : "",
+    bool six = strchr(options->listen.host, ':') != NULL;
+    printf("listening on http://%s%s%s:%u\n", six ? "[" : "", options->listen.host, six ? "]" : "",
            server_port(parts.server));
     fflush(stdout);
     sigwait(&signals, &received);
@@ -160,7 +160,7 @@ int main(int argc, char **argv) {
     return 2;
   }
   if (options.action == OPTIONS_HELP) {
-    fputs(options_help(), stdout);
+    options_help(stdout);
     return EXIT_SUCCESS;
   }
   if (options.action == OPTIONS_VERSION) {

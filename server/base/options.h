@@ -5,13 +5,14 @@
 #include <limits.h>
 #include <stdint.h>
 
+#include "server/base/option.h"
 #include "solver/base/error.h"
 
 struct options {
-  char data[PATH_MAX];   /* data directory */
-  char solver[PATH_MAX]; /* path of pneulab-solve, or a bare name looked up in PATH */
-  char address[64];      /* numeric address to listen on, without brackets */
-  uint16_t port;         /* 0: any free one */
+  char data[PATH_MAX];          /* data directory */
+  char solver[PATH_MAX];        /* path of pneulab-solve, or a bare name looked up in PATH */
+  struct option_address listen; /* where to listen */
+  unsigned executor;            /* index among the words of --executor */
   unsigned workers;
   unsigned connections_per_address;
   uint64_t memory_limit_bytes; /* of one worker; 0: none */
@@ -20,14 +21,19 @@ struct options {
   double timeout_margin_s;     /* what a worker may overrun its job's timeout */
   double header_timeout_s;     /* for one request's header, then again for its body */
   double retry_delay_s;        /* before a second attempt; twice as long before a third */
-  enum { OPTIONS_RUN, OPTIONS_HELP, OPTIONS_VERSION } action;
+  unsigned action;             /* enum options_action */
 };
+
+enum options_action { OPTIONS_RUN, OPTIONS_HELP, OPTIONS_VERSION };
+
+/* The table of all options, for help and the manual page. Static storage. */
+const struct option_row *options_rows(size_t *count);
 
 /* Fills *options from the command line over the defaults. STATUS_INVALID with a sentence that
  * names the option, what is allowed and an example. */
 enum status options_read(int argc, char **argv, struct options *options, struct error *error);
 
-/* The text of --help. Static storage. */
-const char *options_help(void);
+/* Writes the text of --help. */
+void options_help(FILE *out);
 
 #endif

@@ -1,6 +1,5 @@
 #include "server/http/server.h"
 
-#include <arpa/inet.h>
 #include <microhttpd.h>
 #include <pthread.h>
 #include <stdlib.h>
@@ -11,13 +10,11 @@
 #include "server/base/clock.h"
 #include "server/http/connections.h"
 #include "server/http/guard.h"
+#include "server/http/listen.h"
 #include "server/http/route.h"
 #include "server/http/waiters.h"
 
 enum {
-  THREADS = 4,
-  CONNECTIONS_MAX = 500,
-  IDLE_TIMEOUT_S = 15,
   TICK_MS = 200,
   LAST_ANSWERS_MS = 1000,
   TARGET_MAX = 65536, /* more than libmicrohttpd takes */
@@ -248,6 +245,7 @@ static enum MHD_Result server_handle(void *context, struct MHD_Connection *conne
     exchange->phase = EXCHANGE_BODY;
     exchange->request.connection = connection;
     exchange->request.service = server->service;
+    exchange->request.caller.role = ROLE_ADMIN; /* no tokens are configured */
     exchange_open(exchange, method, version);
     connections_phase(server->connections, exchange_connection(exchange), CONNECTION_BODY);
     return exchange_refuse_now(exchange) ? reply_send(exchange, &exchange->reply) : MHD_YES;
@@ -309,13 +307,6 @@ static void server_connection(void *context, struct MHD_Connection *connection,
   }
 }
 
-/* libmicrohttpd is to leave escapes alone: url_parse reads the target as it was sent. */
-static size_t server_keep_escapes(void *context, struct MHD_Connection *connection, char *text) {
-  (void)context;
-  (void)connection;
-  return strlen(text);
-}
-
 /* ---- life -------------------------------------------------------------------------------- */
 
 static void *server_tick(void *context) {
@@ -333,24 +324,6 @@ static void *server_tick(void *context) {
   return NULL;
 }
 
-static struct MHD_Daemon *daemon_start(struct server *server, const struct options *options) {
-  struct sockaddr_in four = {.sin_family = AF_INET, .sin_port = htons(options->port)};
-  struct sockaddr_in6 six = {.sin6_family = AF_INET6, .sin6_port = htons(options->port)};
-  bool is_six = inet_pton(AF_INET6, options->address, &six.sin6_addr) == 1;
-  inet_pton(AF_INET, options->address, &four.sin_addr);
-  const void *address = is_six ? (const void *)&six : (const void *)&four;
-  unsigned flags =
-      MHD_USE_EPOLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME | (is_six ? MHD_USE_IPv6 : 0U);
-  return MHD_start_daemon(
-      flags, options->port, NULL, NULL, server_handle, server, MHD_OPTION_SOCK_ADDR, address,
-      MHD_OPTION_THREAD_POOL_SIZE, (unsigned)THREADS, MHD_OPTION_PER_IP_CONNECTION_LIMIT,
-      options->connections_per_address, MHD_OPTION_CONNECTION_LIMIT, (unsigned)CONNECTIONS_MAX,
-      MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)IDLE_TIMEOUT_S, MHD_OPTION_STRICT_FOR_CLIENT, 1,
-      MHD_OPTION_URI_LOG_CALLBACK, server_note_target, server, MHD_OPTION_UNESCAPE_CALLBACK,
-      server_keep_escapes, NULL, MHD_OPTION_NOTIFY_COMPLETED, server_completed, server,
-      MHD_OPTION_NOTIFY_CONNECTION, server_connection, server, MHD_OPTION_END);
-}
-
 enum status server_create(const struct options *options, struct service *service,
                           struct server **server, struct error *error) {
   struct server *made = calloc(1, sizeof *made);
@@ -366,9 +339,13 @@ enum status server_create(const struct options *options, struct service *service
   pthread_condattr_destroy(&monotonic);
   enum status status =
       connections_create((int64_t)(1000 * options->header_timeout_s), &made->connections, error);
-  if (status == STATUS_OK && !(made->daemon = daemon_start(made, options))) {
-    status = error_set(error, STATUS_IO, NULL, "Cannot listen on %s port %u.", options->address,
-                       options->port);
+  if (status == STATUS_OK) {
+    struct listen_calls calls = {.context = made,
+                                 .handle = server_handle,
+                                 .note_target = server_note_target,
+                                 .completed = server_completed,
+                                 .connection = server_connection};
+    status = listen_start(options, &calls, &made->daemon, error);
   }
   if (status == STATUS_OK && pthread_create(&made->ticker, NULL, server_tick, made) != 0) {
     status = error_set(error, STATUS_NO_MEMORY, NULL, "Cannot start a thread.");

@@ -8,6 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "server/base/caller.h"
 #include "server/exec/pool.h"
 #include "server/http/url.h"
 #include "server/store/store.h"
@@ -40,6 +41,7 @@ enum http_method {
 struct request {
   struct service *service;
   struct MHD_Connection *connection;
+  struct caller caller;
   enum http_method method; /* HEAD counts as GET: the body is left out while sending */
   char *target;            /* as received, then cut into pieces by url_parse */
   struct url url;

@@ -122,8 +122,8 @@ START_TEST(options_are_read) {
   struct options options;
   struct error error;
   ck_assert_int_eq(options_of(&options, &error, "--listen", "[::1]:0"), STATUS_OK);
-  ck_assert_str_eq(options.address, "::1");
-  ck_assert_uint_eq(options.port, 0);
+  ck_assert_str_eq(options.listen.host, "::1");
+  ck_assert_uint_eq(options.listen.port, 0);
   ck_assert_str_eq(options.data, "var");
   ck_assert_uint_ge(options.workers, 1);
   ck_assert_int_eq(options_of(&options, &error, "--memory-limit", "512"), STATUS_OK);

@@ -1,0 +1,40 @@
+#include "server/http/listen.h"
+
+#include <arpa/inet.h>
+#include <stdbool.h>
+#include <string.h>
+
+enum { THREADS = 4, CONNECTIONS_MAX = 500, IDLE_TIMEOUT_S = 15 };
+
+/* libmicrohttpd is to leave escapes alone: url_parse reads the target as it was sent. */
+static size_t keep_escapes(void *context, struct MHD_Connection *connection, char *text) {
+  (void)context;
+  (void)connection;
+  return strlen(text);
+}
+
+enum status listen_start(const struct options *options, const struct listen_calls *calls,
+                         struct MHD_Daemon **daemon, struct error *error) {
+  const struct option_address *listen = &options->listen;
+  struct sockaddr_in four = {.sin_family = AF_INET, .sin_port = htons((uint16_t)listen->port)};
+  struct sockaddr_in6 six = {.sin6_family = AF_INET6, .sin6_port = htons((uint16_t)listen->port)};
+  bool is_six = inet_pton(AF_INET6, listen->host, &six.sin6_addr) == 1;
+  inet_pton(AF_INET, listen->host, &four.sin_addr);
+  const void *address = is_six ? (const void *)&six : (const void *)&four;
+  unsigned flags =
+      MHD_USE_EPOLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME | (is_six ? MHD_USE_IPv6 : 0U);
+  void *context = calls->context;
+  *daemon = MHD_start_daemon(
+      flags, (uint16_t)listen->port, NULL, NULL, calls->handle, context, MHD_OPTION_SOCK_ADDR,
+      address, MHD_OPTION_THREAD_POOL_SIZE, (unsigned)THREADS, MHD_OPTION_PER_IP_CONNECTION_LIMIT,
+      options->connections_per_address, MHD_OPTION_CONNECTION_LIMIT, (unsigned)CONNECTIONS_MAX,
+      MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)IDLE_TIMEOUT_S, MHD_OPTION_STRICT_FOR_CLIENT, 1,
+      MHD_OPTION_URI_LOG_CALLBACK, calls->note_target, context, MHD_OPTION_UNESCAPE_CALLBACK,
+      keep_escapes, NULL, MHD_OPTION_NOTIFY_COMPLETED, calls->completed, context,
+      MHD_OPTION_NOTIFY_CONNECTION, calls->connection, context, MHD_OPTION_END);
+  if (!*daemon) {
+    return error_set(error, STATUS_IO, NULL, "Cannot listen on %s port %u.", listen->host,
+                     listen->port);
+  }
+  return STATUS_OK;
+}
