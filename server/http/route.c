@@ -4,39 +4,41 @@
 
 #include "server/http/handlers.h"
 
-/* A segment in braces is a parameter; what follows the brace must end the segment. */
+/* A segment in braces is a parameter; what follows the brace must end the segment. Whoever has at
+ * least the role may use the route. */
 static const struct route {
   enum http_method method;
+  enum role role;
   const char *pattern;
   handler *handle;
 } routes[] = {
-    {HTTP_GET, "api/v1/jobs", jobs_list},
-    {HTTP_POST, "api/v1/jobs", jobs_submit},
-    {HTTP_POST, "api/v1/jobs:validate", jobs_validate},
-    {HTTP_GET, "api/v1/jobs/{id}", job_show},
-    {HTTP_DELETE, "api/v1/jobs/{id}", job_delete},
-    {HTTP_POST, "api/v1/jobs/{id}/cancel", job_cancel},
-    {HTTP_POST, "api/v1/jobs/{id}/retry", job_retry},
-    {HTTP_POST, "api/v1/jobs/{id}/hold", job_hold},
-    {HTTP_POST, "api/v1/jobs/{id}/release", job_release},
-    {HTTP_GET, "api/v1/jobs/{id}/document", job_document},
-    {HTTP_GET, "api/v1/jobs/{id}/result", result_show},
-    {HTTP_GET, "api/v1/jobs/{id}/metrics", result_metrics},
-    {HTTP_GET, "api/v1/jobs/{id}/samples.csv", result_samples},
-    {HTTP_GET, "api/v1/jobs/{id}/artifacts/{name}", result_artifact},
-    {HTTP_GET, "api/v1/jobs/{id}/attempts", attempts_list},
-    {HTTP_GET, "api/v1/jobs/{id}/log", attempts_log},
-    {HTTP_GET, "api/v1/jobs/{id}/plots/{plot}.png", plot_job},
-    {HTTP_GET, "api/v1/plots/overlay.png", plot_overlay},
-    {HTTP_GET, "api/v1/compare", compare_show},
-    {HTTP_GET, "api/v1/database", database_show},
-    {HTTP_GET, "api/v1/materials", catalogue_materials},
-    {HTTP_GET, "api/v1/schemas/{name}", catalogue_schema},
-    {HTTP_GET, "openapi.yaml", catalogue_openapi},
-    {HTTP_GET, "healthz", health_live},
-    {HTTP_GET, "readyz", health_ready},
-    {HTTP_GET, "metrics", health_metrics},
-    {HTTP_GET, "jobs/{id}", page_job},
+    {HTTP_GET, ROLE_READ, "api/v1/jobs", jobs_list},
+    {HTTP_POST, ROLE_SUBMIT, "api/v1/jobs", jobs_submit},
+    {HTTP_POST, ROLE_READ, "api/v1/jobs:validate", jobs_validate},
+    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}", job_show},
+    {HTTP_DELETE, ROLE_ADMIN, "api/v1/jobs/{id}", job_delete},
+    {HTTP_POST, ROLE_SUBMIT, "api/v1/jobs/{id}/cancel", job_cancel},
+    {HTTP_POST, ROLE_SUBMIT, "api/v1/jobs/{id}/retry", job_retry},
+    {HTTP_POST, ROLE_SUBMIT, "api/v1/jobs/{id}/hold", job_hold},
+    {HTTP_POST, ROLE_SUBMIT, "api/v1/jobs/{id}/release", job_release},
+    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/document", job_document},
+    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/result", result_show},
+    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/metrics", result_metrics},
+    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/samples.csv", result_samples},
+    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/artifacts/{name}", result_artifact},
+    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/attempts", attempts_list},
+    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/log", attempts_log},
+    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/plots/{plot}.png", plot_job},
+    {HTTP_GET, ROLE_READ, "api/v1/plots/overlay.png", plot_overlay},
+    {HTTP_GET, ROLE_READ, "api/v1/compare", compare_show},
+    {HTTP_GET, ROLE_ADMIN, "api/v1/database", database_show},
+    {HTTP_GET, ROLE_READ, "api/v1/materials", catalogue_materials},
+    {HTTP_GET, ROLE_READ, "api/v1/schemas/{name}", catalogue_schema},
+    {HTTP_GET, ROLE_NONE, "openapi.yaml", catalogue_openapi},
+    {HTTP_GET, ROLE_NONE, "healthz", health_live},
+    {HTTP_GET, ROLE_NONE, "readyz", health_ready},
+    {HTTP_GET, ROLE_READ, "metrics", health_metrics},
+    {HTTP_GET, ROLE_NONE, "jobs/{id}", page_job},
 };
 
 /* Matches one segment; a parameter's value is put into *parameter (its suffix cut off). */
@@ -89,6 +91,7 @@ handler *route_find(struct request *request, struct reply *reply) {
       continue;
     }
     if (routes[i].method == request->method) {
+      request->least_role = routes[i].role;
       return routes[i].handle;
     }
     strcat(allowed, allowed[0] ? ", " : "");
@@ -98,6 +101,7 @@ handler *route_find(struct request *request, struct reply *reply) {
   }
   if (!allowed[0] && page_exists(request)) {
     if (request->method == HTTP_GET) {
+      request->least_role = ROLE_NONE; /* pages are the program's own: no data is in them */
       return page_show;
     }
     strcpy(allowed, "GET, HEAD");

@@ -4,8 +4,8 @@
 
 #include "server/http/service.h"
 
-/* The handler for the request's path and method, with request->parameters filled. Otherwise
- * replies 404 or 405 (with Allow) and returns NULL. */
+/* The handler for the request's path and method, with request->parameters and
+ * least_role filled. Otherwise replies 404 or 405 (with Allow) and returns NULL. */
 handler *route_find(struct request *request, struct reply *reply);
 
 #endif

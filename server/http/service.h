@@ -42,6 +42,7 @@ struct request {
   struct service *service;
   struct MHD_Connection *connection;
   struct caller caller;
+  enum role least_role;    /* that the route asks for */
   enum http_method method; /* HEAD counts as GET: the body is left out while sending */
   char *target;            /* as received, then cut into pieces by url_parse */
   struct url url;
