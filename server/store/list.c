@@ -150,8 +150,7 @@ enum status store_counts(struct store *store, int64_t counts[JOB_STATE_COUNT],
   }
   sqlite3_stmt *statement;
   int row = 0;
-  enum status status =
-      sql_prepare(db, &statement, error, "SELECT state, count(*) FROM job GROUP BY state", "");
+  enum status status = sql_prepare(db, &statement, error, "SELECT state, jobs FROM job_count", "");
   while (status == STATUS_OK && (status = sql_step(statement, &row, error)) == STATUS_OK && row) {
     enum job_state state;
     if (job_state_parse(sql_text(statement, 0), &state)) {

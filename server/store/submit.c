@@ -49,7 +49,10 @@ static enum status submission_labels(sqlite3 *db, int64_t id, const json_t *labe
       continue;
     }
     enum status status =
-        sql_run(db, error, "INSERT INTO job_label VALUES (?, ?, ?)", "itt", id, name, text);
+        sql_run(db, error,
+                "INSERT INTO job_label (job_id, name, value, kind, state, finished_ms, job_name) "
+                "SELECT id, ?, ?, kind, state, finished_ms, name FROM job WHERE id = ?",
+                "tti", name, text, id);
     if (status != STATUS_OK) {
       return status;
     }

@@ -1,142 +1,10 @@
 /* The results database: durability rules, the state machine, the fence, lists. */
 #include <check.h>
-#include <sqlite3.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-#include "server/base/file.h"
-#include "server/store/store.h"
-
-static char directory[64];
-static struct store *store;
-
-static const char document[] = "{\"kind\":\"response\",\"name\":\"n\",\"labels\":{\"paper\":\"m\"},"
-                               "\"actuator\":{\"height\":\"15.6 mm\",\"count\":3,\"on\":true,"
-                               "\"a/b~c\":\"text\"}}";
-
-static void store_setup(void) {
-  struct error error;
-  strcpy(directory, "/tmp/pneulab-store-XXXXXX");
-  ck_assert_ptr_nonnull(mkdtemp(directory));
-  ck_assert_msg(store_open(directory, &store, &error) == STATUS_OK, "%s", error.message);
-}
-
-static void store_teardown(void) {
-  store_close(store);
-  file_remove_tree(directory);
-}
-
-static void store_reopen(void) {
-  struct error error;
-  store_close(store);
-  ck_assert_msg(store_open(directory, &store, &error) == STATUS_OK, "%s", error.message);
-}
-
-static int64_t submit_text(const char *text, const char *key, enum status expected,
-                           bool *replayed) {
-  struct error error;
-  int64_t id = 0;
-  json_t *root = json_loads(text, 0, NULL);
-  ck_assert_ptr_nonnull(root);
-  struct submission submission = {
-      .document = text, .root = root, .spec_hash = "00", .idempotency_key = key};
-  ck_assert_int_eq(store_submit(store, &submission, &id, replayed, &error), expected);
-  json_decref(root);
-  return id;
-}
-
-static int64_t submit(void) {
-  bool replayed;
-  return submit_text(document, NULL, STATUS_OK, &replayed);
-}
-
-static struct claim claim_next(void) {
-  struct claim claim;
-  struct error error;
-  bool claimed;
-  ck_assert_int_eq(store_claim(store, &claim, &claimed, &error), STATUS_OK);
-  ck_assert(claimed);
-  free(claim.document);
-  claim.document = NULL;
-  return claim;
-}
-
-static bool claim_none(void) {
-  struct claim claim;
-  struct error error;
-  bool claimed;
-  ck_assert_int_eq(store_claim(store, &claim, &claimed, &error), STATUS_OK);
-  free(claim.document);
-  return !claimed;
-}
-
-static enum job_state state_of(int64_t id) {
-  struct job_record record;
-  struct error error;
-  ck_assert_int_eq(store_job(store, id, &record, &error), STATUS_OK);
-  enum job_state state = record.state;
-  job_record_clear(&record);
-  return state;
-}
-
-static enum status finish(const struct claim *claim, enum attempt_end end, enum job_state *state) {
-  static const char text[] = "{\"status\":\"succeeded\",\"metrics\":{\"angle_deg\":1.5},"
-                             "\"samples\":[{\"p_kPa\":1},{\"p_kPa\":2}]}";
-  struct error error;
-  json_t *result = json_loads(text, 0, NULL);
-  json_t *artifacts = json_pack("{s:i}", "surface.json", 12);
-  struct attempt_outcome outcome = {.job_id = claim->job_id,
-                                    .attempt = claim->attempt,
-                                    .end = end,
-                                    .reason_code = "why",
-                                    .message = "",
-                                    .exit_code = 0,
-                                    .directory = "attempts/x"};
-  if (end == ATTEMPT_SUCCEEDED) {
-    outcome.result_text = text;
-    outcome.result = result;
-    outcome.artifacts = artifacts;
-  }
-  enum status status = store_attempt_finish(store, &outcome, state, &error);
-  json_decref(result);
-  json_decref(artifacts);
-  return status;
-}
-
-static struct claim run_next(void) {
-  struct error error;
-  struct claim claim = claim_next();
-  ck_assert_int_eq(store_attempt_running(store, claim.job_id, claim.attempt, 1, &error), STATUS_OK);
-  return claim;
-}
-
-/* A number from the database as any other program sees it. */
-static double sql_number(const char *sql) {
-  char path[100];
-  sqlite3 *db;
-  sqlite3_stmt *statement;
-  snprintf(path, sizeof path, "%s/pneulab.db", directory);
-  ck_assert_int_eq(sqlite3_open(path, &db), SQLITE_OK);
-  ck_assert_msg(sqlite3_prepare_v2(db, sql, -1, &statement, NULL) == SQLITE_OK, "%s",
-                sqlite3_errmsg(db));
-  ck_assert_int_eq(sqlite3_step(statement), SQLITE_ROW);
-  double value = sqlite3_column_double(statement, 0);
-  sqlite3_finalize(statement);
-  sqlite3_close(db);
-  return value;
-}
-
-static bool sql_allowed(const char *sql) {
-  char path[100];
-  sqlite3 *db;
-  snprintf(path, sizeof path, "%s/pneulab.db", directory);
-  ck_assert_int_eq(sqlite3_open(path, &db), SQLITE_OK);
-  bool allowed = sqlite3_exec(db, sql, NULL, NULL, NULL) == SQLITE_OK;
-  sqlite3_close(db);
-  return allowed;
-}
+#include "tests/unit/store_case.h"
 
 START_TEST(job_survives_reopening) {
   int64_t id = submit();
@@ -298,7 +166,7 @@ START_TEST(illegal_transitions_are_refused) {
       {"starting", "failed"},      {"running", "succeeded"},    {"running", "failed"},
       {"running", "timed_out"},    {"running", "cancelling"},   {"running", "retry_wait"},
       {"running", "queued"},       {"cancelling", "cancelled"}, {"retry_wait", "starting"},
-      {"retry_wait", "cancelled"},
+      {"retry_wait", "cancelled"}, {"queued", "succeeded"},
   };
   for (int from = 0; from < JOB_STATE_COUNT; from++) {
     for (int to = 0; to < JOB_STATE_COUNT; to++) {
@@ -340,20 +208,13 @@ END_TEST
 
 /* Opening an older database brings its views up to date and loses nothing. */
 START_TEST(older_database_is_migrated) {
-  struct error error;
-  struct claim claim;
-  enum job_state state;
-  submit();
-  claim = run_next();
-  finish(&claim, ATTEMPT_SUCCEEDED, &state);
-  ck_assert(sql_allowed("DROP VIEW comparison"));
-  ck_assert(sql_allowed("CREATE VIEW comparison AS SELECT id FROM job"));
-  ck_assert(sql_allowed("PRAGMA user_version = 1"));
-  store_close(store);
-  ck_assert_int_eq(store_open(directory, &store, &error), STATUS_OK);
+  store_make_old(1, "INSERT INTO job (state, kind, name, document, spec_hash, created_ms, "
+                    "finished_ms) VALUES ('succeeded', 'response', 'n', '{}', '00', 1, 2)");
+  store_reopen();
   ck_assert_double_eq(sql_number("SELECT count(*) FROM comparison WHERE twist_angle_deg IS NULL"),
                       1);
   ck_assert_double_gt(sql_number("PRAGMA user_version"), 1);
+  ck_assert_int_eq(state_of(1), JOB_STATE_SUCCEEDED);
 }
 END_TEST
 
