@@ -12,9 +12,9 @@
 
 #include "solver/base/text.h"
 
-enum { QUANTITY_MAX = 64, BASE_COUNT = 4, KNOWN_MAX = 256, KNOWN_TEXT = 24 };
+enum { QUANTITY_MAX = 64, BASE_COUNT = 5, KNOWN_MAX = 256, KNOWN_TEXT = 24 };
 
-/* A unit taken apart: value in SI = scale * number, SI unit = m^p0 kg^p1 s^p2 rad^p3. */
+/* A unit taken apart: value in SI = scale * number, SI unit = m^p0 kg^p1 s^p2 rad^p3 byte^p4. */
 struct dimension {
   double scale;
   int power[BASE_COUNT];
@@ -41,14 +41,14 @@ static const struct {
   const char *name;
   int power[BASE_COUNT];
 } dimension_names[] = {
-    {"a length", {1, 0, 0, 0}},      {"an area", {2, 0, 0, 0}},
-    {"a volume", {3, 0, 0, 0}},      {"a mass", {0, 1, 0, 0}},
-    {"a time", {0, 0, 1, 0}},        {"an angle", {0, 0, 0, 1}},
-    {"a pressure", {-1, 1, -2, 0}},  {"a force", {1, 1, -2, 0}},
-    {"a speed", {1, 0, -1, 0}},      {"an acceleration", {1, 0, -2, 0}},
-    {"a density", {-3, 1, 0, 0}},    {"a rate", {0, 0, -1, 0}},
-    {"a pure number", {0, 0, 0, 0}}, {"a stiffness", {0, 1, -2, 0}},
-    {"a damping", {0, 1, -1, 0}},
+    {"a length", {1, 0, 0, 0, 0}},      {"an area", {2, 0, 0, 0, 0}},
+    {"a volume", {3, 0, 0, 0, 0}},      {"a mass", {0, 1, 0, 0, 0}},
+    {"a time", {0, 0, 1, 0, 0}},        {"an angle", {0, 0, 0, 1, 0}},
+    {"a pressure", {-1, 1, -2, 0, 0}},  {"a force", {1, 1, -2, 0, 0}},
+    {"a speed", {1, 0, -1, 0, 0}},      {"an acceleration", {1, 0, -2, 0, 0}},
+    {"a density", {-3, 1, 0, 0, 0}},    {"a rate", {0, 0, -1, 0, 0}},
+    {"a pure number", {0, 0, 0, 0, 0}}, {"a stiffness", {0, 1, -2, 0, 0}},
+    {"a damping", {0, 1, -1, 0, 0}},    {"an amount of memory", {0, 0, 0, 0, 1}},
 };
 
 /* ---- taking a unit apart ---------------------------------------------------------------- */
@@ -60,7 +60,7 @@ struct visit {
 };
 
 static void add_power(struct dimension *dimension, const ut_unit *basic, int power) {
-  static const char *const symbols[BASE_COUNT] = {"m", "kg", "s", "rad"};
+  static const char *const symbols[BASE_COUNT] = {"m", "kg", "s", "rad", "byte"};
   const char *symbol = ut_get_symbol(basic, UT_ASCII);
   for (int i = 0; symbol && i < BASE_COUNT; i++) {
     if (strcmp(symbol, symbols[i]) == 0) {
@@ -154,6 +154,25 @@ static bool parse_unit(const struct units *units, const char *text, struct dimen
 
 /* ---- the handle ------------------------------------------------------------------------- */
 
+/* Adds amounts of memory, which UDUNITS takes for pure numbers or does not know: a base unit of
+ * their own, under the signs that people write. */
+static bool add_memory(ut_system *system) {
+  static const struct {
+    const char *sign;
+    double bytes;
+  } known[] = {{"kB", 1e3},     {"MB", 1e6},     {"GB", 1e9},     {"TB", 1e12},
+               {"KiB", 0x1p10}, {"MiB", 0x1p20}, {"GiB", 0x1p30}, {"TiB", 0x1p40}};
+  ut_unit *byte = ut_new_base_unit(system);
+  bool good = byte && ut_map_unit_to_symbol(byte, "byte", UT_ASCII) == UT_SUCCESS;
+  for (size_t i = 0; good && i < sizeof known / sizeof *known; i++) {
+    ut_unit *unit = ut_scale(known[i].bytes, byte);
+    good = unit && ut_map_symbol_to_unit(known[i].sign, UT_ASCII, unit) == UT_SUCCESS;
+    ut_free(unit);
+  }
+  ut_free(byte);
+  return good;
+}
+
 enum status units_create(struct units **units, struct error *error) {
   struct units *created = calloc(1, sizeof *created);
   if (created) {
@@ -168,7 +187,8 @@ enum status units_create(struct units **units, struct error *error) {
   ut_set_error_message_handler(ut_ignore); /* it would write to standard error */
   created->system = ut_read_xml(NULL);
   ut_unit *degree = created->system ? ut_get_unit_by_name(created->system, "degree") : NULL;
-  if (!degree || ut_map_name_to_unit("deg", UT_ASCII, degree) != UT_SUCCESS) {
+  if (!degree || ut_map_name_to_unit("deg", UT_ASCII, degree) != UT_SUCCESS ||
+      !add_memory(created->system)) {
     status = error_set(error, STATUS_IO, NULL,
                        "the unit database cannot be read: install UDUNITS-2's data, or name its "
                        "file in UDUNITS2_XML_PATH");

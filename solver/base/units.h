@@ -14,7 +14,8 @@ void units_destroy(struct units *units);
 
 /* Reads a quantity that must have the dimension of `unit` ("kPa", "mm", "deg", "kg/m3").
  * text: decimal number, optional space, unit; at most 64 bytes. "deg" is the degree of angle.
- * *value_si: finite, in coherent SI units (m, kg, s, rad).
+ * *value_si: finite, in coherent SI units (m, kg, s, rad); amounts of memory ("2 GiB",
+ * "500 MB") in bytes.
  * STATUS_INVALID with a sentence that shows the right form when the number or the unit is
  * missing or malformed, the dimension is another one, the unit has an offset or is
  * logarithmic, or the value is out of range. The error's pointer is left empty. */

@@ -148,7 +148,8 @@ enum status reader_hlpv_stiffness(const struct reader *reader, const json_t *val
                                   double per, struct hlpv_mode *mode);
 
 /* SHA-256 of the canonical text of the document (sorted keys, no spaces, whole reals as integers)
- * without name, labels and comments, as 64 hexadecimal digits. STATUS_OK or STATUS_NO_MEMORY. */
+ * without name, labels, comments and what is about the queue (memory, priority, reuse), as 64
+ * hexadecimal digits. STATUS_OK or STATUS_NO_MEMORY. */
 enum status job_hash(const json_t *document, char hash[65], struct error *error);
 
 #endif

@@ -270,6 +270,13 @@ static enum status read_kind(const struct job_reader *job_reader, const struct r
                                                : read_response(reader, document, spec);
 }
 
+/* What every kind has: who goes first, and with what. */
+static void read_queue(const struct reader *reader, const json_t *document, struct job_spec *spec) {
+  spec->memory_bytes = reader_member(reader, document, "memory", "MB", 0.0);
+  spec->priority = reader_count(document, "priority", 0);
+  spec->reuse = json_is_true(json_object_get(document, "reuse"));
+}
+
 /* Whether the spec alone does not say everything about the job. */
 static bool keeps_document(const struct job_spec *spec) {
   return spec->kind == JOB_STUDY || spec->kind == JOB_FIT_MATERIAL || spec->kind == JOB_IDENTIFY ||
@@ -292,6 +299,7 @@ enum status job_reader_check(const struct job_reader *reader, json_t *document,
     status = schema_fill(reader->schema, document, error);
   }
   if (status == STATUS_OK) {
+    read_queue(&inner, document, spec);
     status = read_kind(reader, &inner, document, spec);
   }
   if (status == STATUS_OK) {

@@ -272,8 +272,12 @@ struct job_spec {
   enum accuracy accuracy;
   bool error_estimate; /* solve the end of the load path on a finer mesh, too */
   double timeout_s;    /* 0: none */
+  double memory_bytes; /* limit of each process, 0: none of the job's own; of every kind */
+  int priority;        /* -100 .. 100; of every kind */
+  bool reuse;          /* the result of an equal job will do; of every kind */
   char hash[65];       /* SHA-256 of the canonical job text: sorted keys, defaults filled in, no
-                        * name, labels and comments; 64 hexadecimal digits */
+                        * name, labels and comments, nothing about the queue (the three members
+                        * before); 64 hexadecimal digits */
   json_t *document; /* of a job whose data have no bound (tables, members of a study) the document
                      * with its defaults filled in, otherwise NULL; owned by the spec as read,
                      * borrowed by its copies */

@@ -174,6 +174,9 @@ START_TEST(the_hash_overlooks_what_only_people_read) {
   check_same_hash("/labels", "{\"a\": \"b\"}", true);
   check_same_hash("/comment", "\"remark\"", true);
   check_same_hash("/actuator/comment", "[\"remark\"]", true);
+  check_same_hash("/memory", "\"1 GiB\"", true);
+  check_same_hash("/priority", "7", true);
+  check_same_hash("/reuse", "true", true);
   check_same_hash("/load/pressure/steps", "10", true); /* its default */
   check_same_hash("/load/pressure/steps", "10.0", true);
   check_same_hash("/contact", "true", true);
