@@ -19,12 +19,11 @@ void attempts_list(struct request *request, struct reply *reply) {
 }
 
 void attempts_log(struct request *request, struct reply *reply) {
-  static const char *const known[] = {"attempt", NULL};
   char name[RUN_DIRECTORY_SIZE], path[PATH_MAX];
   struct job_record record;
   struct error error;
   int64_t id, attempt;
-  if (!request_id(request, reply, &id) || !request_query_known(request, reply, known)) {
+  if (!request_id(request, reply, &id)) {
     return;
   }
   if (store_job(request->service->store, id, &record, &error) != STATUS_OK) {

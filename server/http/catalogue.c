@@ -1,6 +1,7 @@
 #include <string.h>
 
 #include "schema/embedded.h"
+#include "server/http/cache.h"
 #include "server/http/handlers.h"
 #include "solver/job/material.h"
 #include "solver/job/schema.h"
@@ -43,26 +44,44 @@ static const struct embedded_file *embedded_find(const char *name) {
   return NULL;
 }
 
+/* Replies with a document that the program carries. */
+static void document_reply(const struct request *request, struct reply *reply,
+                           const char *content_type, const void *data, size_t size) {
+  uint64_t tag = cache_tag_add(cache_tag(), data, size);
+  if (!cache_fresh(request, reply, tag)) {
+    reply_static(reply, content_type, data, size);
+    cache_mark(reply, tag);
+  }
+}
+
 void catalogue_schema(struct request *request, struct reply *reply) {
   const char *name = request->parameters[0];
   const struct embedded_file *file = embedded_find("result.schema.json");
   if (strcmp(name, "job") == 0) {
     size_t size;
     const char *text = job_schema_text(&size);
-    reply_static(reply, "application/schema+json", text, size);
+    document_reply(request, reply, "application/schema+json", text, size);
   } else if (strcmp(name, "result") == 0 && file) {
-    reply_static(reply, "application/schema+json", file->data, file->size);
+    document_reply(request, reply, "application/schema+json", file->data, file->size);
   } else {
     reply_problem(reply, 404, "not_found", "There are the schemas job and result.");
   }
 }
 
-void catalogue_openapi(struct request *request, struct reply *reply) {
-  (void)request;
-  const struct embedded_file *file = embedded_find("openapi.yaml");
+static void description_reply(const struct request *request, struct reply *reply, const char *name,
+                              const char *content_type) {
+  const struct embedded_file *file = embedded_find(name);
   if (file) {
-    reply_static(reply, "application/yaml", file->data, file->size);
+    document_reply(request, reply, content_type, file->data, file->size);
   } else {
     reply_problem(reply, 404, "not_found", "This build carries no API description.");
   }
+}
+
+void catalogue_openapi_json(struct request *request, struct reply *reply) {
+  description_reply(request, reply, "openapi.json", "application/json");
+}
+
+void catalogue_openapi_yaml(struct request *request, struct reply *reply) {
+  description_reply(request, reply, "openapi.yaml", "application/yaml");
 }

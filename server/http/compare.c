@@ -123,13 +123,11 @@ static json_t *jobs_view(const struct comparison *comparison) {
 }
 
 void compare_show(struct request *request, struct reply *reply) {
-  static const char *const known[] = {"jobs", NULL};
   struct comparison comparison;
   struct error error;
   int64_t ids[COMPARE_MAX];
   size_t count;
-  if (!request_query_known(request, reply, known) ||
-      !request_query_jobs(request, reply, COMPARE_MAX, ids, &count)) {
+  if (!request_query_jobs(request, reply, COMPARE_MAX, ids, &count)) {
     return;
   }
   if (comparison_read(request->service->store, ids, count, &comparison, &error) != STATUS_OK) {

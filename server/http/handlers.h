@@ -23,7 +23,7 @@ handler plot_job, plot_overlay;
 handler compare_show;
 
 /* catalogue.c: what the program knows by itself */
-handler catalogue_materials, catalogue_schema, catalogue_openapi;
+handler catalogue_materials, catalogue_schema, catalogue_openapi_json, catalogue_openapi_yaml;
 
 /* database.c */
 handler database_show;

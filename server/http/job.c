@@ -4,6 +4,7 @@
 
 #include "server/base/file.h"
 #include "server/exec/run.h"
+#include "server/http/cache.h"
 #include "server/http/handlers.h"
 #include "server/http/job_view.h"
 #include "server/http/waiters.h"
@@ -28,7 +29,13 @@ void job_document(struct request *request, struct reply *reply) {
     reply_error(reply, &error);
     return;
   }
+  uint64_t tag = cache_tag_add(cache_tag(), text, strlen(text));
+  if (cache_fresh(request, reply, tag)) {
+    free(text);
+    return;
+  }
   reply_text(reply, "application/json", text, strlen(text));
+  cache_mark(reply, tag);
 }
 
 /* Removes the folders of the job's attempts. */

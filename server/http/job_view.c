@@ -144,7 +144,7 @@ static void job_waited(struct request *request, struct reply *reply) {
   json_decref(result);
   job_record_clear(&record);
   reply_header(reply, "Preference-Applied", "wait=%lld", (long long)request_wait_s(request));
-  if (request->method == HTTP_POST) {
+  if (request->job_is_new) {
     location_set(reply, request->job_id);
   }
 }
@@ -157,6 +157,7 @@ void job_view_reply_waiting(struct request *request, struct reply *reply, unsign
     return;
   }
   request->job_id = id;
+  request->job_is_new = location;
   reply->wait_job_id = id;
   reply->wait_ms = 1000 * wait_s;
   reply->then = job_waited;

@@ -42,13 +42,11 @@ void jobs_submit(struct request *request, struct reply *reply) {
   json_t *root = NULL;
   int64_t id;
   bool replayed;
-  static const char *const known[] = {NULL};
   if (atomic_load(&service->draining)) {
     reply_problem(reply, 503, "shutting_down", "The server is shutting down; try again later.");
     return;
   }
-  if (!request_query_known(request, reply, known) ||
-      !key_read(request, reply, &submission.idempotency_key) ||
+  if (!key_read(request, reply, &submission.idempotency_key) ||
       !document_check(request, reply, &spec, &root)) {
     return;
   }
@@ -162,14 +160,13 @@ static json_t *list_view(const struct service *service, struct job_record *recor
 }
 
 void jobs_list(struct request *request, struct reply *reply) {
-  static const char *const known[] = {"state", "kind", "label.", "sort", "cursor", "limit", NULL};
   struct list_query query = {.kind = url_query(&request->url, "kind")};
   struct job_record *records;
   struct error error;
   size_t count;
   int64_t next, limit;
-  if (!request_query_known(request, reply, known) || !list_states(request, reply, &query) ||
-      !list_labels(request, reply, &query) || !list_sort(request, reply, &query) ||
+  if (!list_states(request, reply, &query) || !list_labels(request, reply, &query) ||
+      !list_sort(request, reply, &query) ||
       !request_query_integer(request, reply, "cursor", 1, INT64_MAX, 0, &query.cursor) ||
       !request_query_integer(request, reply, "limit", 1, LIST_LIMIT_MAX, LIST_LIMIT, &limit)) {
     return;

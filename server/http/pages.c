@@ -1,6 +1,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "server/http/cache.h"
 #include "server/http/handlers.h"
 #include "server/http/static_files.h"
 
@@ -37,12 +38,7 @@ static const struct static_file *page_of(const struct request *request) {
 
 static void page_reply(const struct request *request, struct reply *reply,
                        const struct static_file *file) {
-  const char *known = request_header(request, "If-None-Match");
-  reply_header(reply, "ETag", "%s", file->etag);
-  reply_header(reply, "Cache-Control", "no-cache");
-  if (known && strstr(known, file->etag)) {
-    reply->status = 304;
-  } else {
+  if (!cache_fresh_text(request, reply, file->etag)) {
     reply_static(reply, file->content_type, file->data, file->size);
   }
 }

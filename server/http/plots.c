@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "server/http/cache.h"
 #include "server/http/handlers.h"
 #include "server/plot/plot.h"
 
@@ -12,6 +13,7 @@ enum { OVERLAY_MAX = 12, WIDTH = 800, HEIGHT = 600, SIDE_MIN = 320, SIDE_MAX = 2
 struct drawing {
   struct job_record record;
   json_t *result;
+  uint64_t tag; /* of what the picture follows from */
   char artifacts_dir[PATH_MAX];
 };
 
@@ -32,6 +34,8 @@ static enum status drawing_read(const struct service *service, int64_t id, struc
     int length = snprintf(drawing->artifacts_dir, sizeof drawing->artifacts_dir, "%s/%s/out",
                           service->data, directory);
     drawing->result = json_loads(text, 0, NULL);
+    drawing->tag = cache_tag_add(cache_tag(), text, strlen(text));
+    drawing->tag = cache_tag_add(drawing->tag, drawing->record.name, strlen(drawing->record.name));
     if (!drawing->result || length < 0 || (size_t)length >= sizeof drawing->artifacts_dir) {
       status = error_set(error, STATUS_NO_MEMORY, NULL, "The result of job %lld cannot be read.",
                          (long long)id);
@@ -52,6 +56,7 @@ static void plot_reply(struct request *request, struct reply *reply, const char 
                        const int64_t *ids, size_t count) {
   struct error error = {.status = STATUS_OK};
   struct plot_input inputs[OVERLAY_MAX];
+  uint64_t tag = cache_tag();
   unsigned char *png = NULL;
   size_t size = 0;
   int64_t width, height;
@@ -65,15 +70,21 @@ static void plot_reply(struct request *request, struct reply *reply, const char 
   for (size_t i = 0; i < count && status == STATUS_OK; i++) {
     status = drawing_read(request->service, ids[i], &drawings[i], &inputs[i], &error);
     inputs[i].metric = url_query(&request->url, "metric");
+    tag = cache_tag_add(tag, &drawings[i].tag, sizeof drawings[i].tag);
+  }
+  if (status == STATUS_OK && cache_fresh(request, reply, tag)) {
+    goto done;
   }
   if (status == STATUS_OK) {
     status = plot_render(plot, inputs, count, (int)width, (int)height, &png, &size, &error);
   }
   if (status == STATUS_OK) {
     reply_text(reply, "image/png", (char *)png, size);
+    cache_mark(reply, tag);
   } else {
     reply_error(reply, &error);
   }
+done:
   for (size_t i = 0; drawings && i < count; i++) {
     drawing_clear(&drawings[i]);
   }
@@ -81,19 +92,16 @@ static void plot_reply(struct request *request, struct reply *reply, const char 
 }
 
 void plot_job(struct request *request, struct reply *reply) {
-  static const char *const known[] = {"width", "height", "metric", NULL};
   int64_t id;
-  if (request_id(request, reply, &id) && request_query_known(request, reply, known)) {
+  if (request_id(request, reply, &id)) {
     plot_reply(request, reply, request->parameters[1], &id, 1);
   }
 }
 
 void plot_overlay(struct request *request, struct reply *reply) {
-  static const char *const known[] = {"jobs", "width", "height", NULL};
   int64_t ids[OVERLAY_MAX];
   size_t count;
-  if (request_query_known(request, reply, known) &&
-      request_query_jobs(request, reply, OVERLAY_MAX, ids, &count)) {
+  if (request_query_jobs(request, reply, OVERLAY_MAX, ids, &count)) {
     plot_reply(request, reply, "overlay", ids, count);
   }
 }

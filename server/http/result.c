@@ -2,7 +2,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include "server/http/cache.h"
 #include "server/http/handlers.h"
 
 /* The job's result document; otherwise replies why there is none and returns false. */
@@ -31,9 +34,16 @@ static bool result_read(const struct request *request, struct reply *reply, int6
 void result_show(struct request *request, struct reply *reply) {
   int64_t id;
   char *text;
-  if (result_read(request, reply, &id, &text, NULL)) {
-    reply_text(reply, "application/json", text, strlen(text));
+  if (!result_read(request, reply, &id, &text, NULL)) {
+    return;
   }
+  uint64_t tag = cache_tag_add(cache_tag(), text, strlen(text));
+  if (cache_fresh(request, reply, tag)) {
+    free(text);
+    return;
+  }
+  reply_text(reply, "application/json", text, strlen(text));
+  cache_mark(reply, tag);
 }
 
 void result_metrics(struct request *request, struct reply *reply) {
@@ -117,13 +127,21 @@ void result_samples(struct request *request, struct reply *reply) {
   if (!result_read(request, reply, &id, &text, NULL)) {
     return;
   }
+  uint64_t tag = cache_tag_add(cache_tag(), text, strlen(text));
+  if (cache_fresh(request, reply, tag)) {
+    free(text);
+    return;
+  }
   json_t *result = json_loads(text, 0, NULL);
   free(text);
   char *csv = samples_csv(json_object_get(result, "samples"), &size);
   json_decref(result);
   reply_text(reply, "text/csv; charset=utf-8", csv, size);
-  reply_header(reply, "Content-Disposition", "attachment; filename=\"job-%lld-samples.csv\"",
-               (long long)id);
+  if (csv) {
+    cache_mark(reply, tag);
+    reply_header(reply, "Content-Disposition", "attachment; filename=\"job-%lld-samples.csv\"",
+                 (long long)id);
+  }
 }
 
 static const char *artifact_type(const char *name) {
@@ -141,6 +159,25 @@ static const char *artifact_type(const char *name) {
     return "text/plain; charset=utf-8";
   }
   return "application/octet-stream";
+}
+
+/* The file of an attempt is written once: its place and its time name its content. */
+static void artifact_mark(const struct request *request, struct reply *reply) {
+  struct stat info;
+  if (reply->fd < 0 || fstat(reply->fd, &info) != 0) {
+    return;
+  }
+  uint64_t tag = cache_tag_add(cache_tag(), &info.st_ino, sizeof info.st_ino);
+  tag = cache_tag_add(tag, &info.st_size, sizeof info.st_size);
+  tag = cache_tag_add(tag, &info.st_mtim, sizeof info.st_mtim);
+  if (cache_fresh(request, reply, tag)) {
+    close(reply->fd);
+    reply->fd = -1;
+    reply->size = 0;
+    reply->content_type = NULL;
+  } else {
+    cache_mark(reply, tag);
+  }
 }
 
 void result_artifact(struct request *request, struct reply *reply) {
@@ -161,6 +198,7 @@ void result_artifact(struct request *request, struct reply *reply) {
     int length = snprintf(path, sizeof path, "%s/%s/out/%s", service->data, directory, name);
     if (length > 0 && (size_t)length < sizeof path) {
       reply_file(reply, artifact_type(name), path);
+      artifact_mark(request, reply);
     }
   }
   free(directory);

@@ -11,34 +11,37 @@ static const struct route {
   enum role role;
   const char *pattern;
   handler *handle;
+  const char *query; /* names of its query parameters; all that start with one that ends in a dot;
+                        NULL: whatever */
 } routes[] = {
-    {HTTP_GET, ROLE_READ, "api/v1/jobs", jobs_list},
-    {HTTP_POST, ROLE_SUBMIT, "api/v1/jobs", jobs_submit},
-    {HTTP_POST, ROLE_READ, "api/v1/jobs:validate", jobs_validate},
-    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}", job_show},
-    {HTTP_DELETE, ROLE_ADMIN, "api/v1/jobs/{id}", job_delete},
-    {HTTP_POST, ROLE_SUBMIT, "api/v1/jobs/{id}/cancel", job_cancel},
-    {HTTP_POST, ROLE_SUBMIT, "api/v1/jobs/{id}/retry", job_retry},
-    {HTTP_POST, ROLE_SUBMIT, "api/v1/jobs/{id}/hold", job_hold},
-    {HTTP_POST, ROLE_SUBMIT, "api/v1/jobs/{id}/release", job_release},
-    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/document", job_document},
-    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/result", result_show},
-    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/metrics", result_metrics},
-    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/samples.csv", result_samples},
-    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/artifacts/{name}", result_artifact},
-    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/attempts", attempts_list},
-    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/log", attempts_log},
-    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/plots/{plot}.png", plot_job},
-    {HTTP_GET, ROLE_READ, "api/v1/plots/overlay.png", plot_overlay},
-    {HTTP_GET, ROLE_READ, "api/v1/compare", compare_show},
-    {HTTP_GET, ROLE_ADMIN, "api/v1/database", database_show},
-    {HTTP_GET, ROLE_READ, "api/v1/materials", catalogue_materials},
-    {HTTP_GET, ROLE_READ, "api/v1/schemas/{name}", catalogue_schema},
-    {HTTP_GET, ROLE_NONE, "openapi.yaml", catalogue_openapi},
-    {HTTP_GET, ROLE_NONE, "healthz", health_live},
-    {HTTP_GET, ROLE_NONE, "readyz", health_ready},
-    {HTTP_GET, ROLE_READ, "metrics", health_metrics},
-    {HTTP_GET, ROLE_NONE, "jobs/{id}", page_job},
+    {HTTP_GET, ROLE_READ, "api/v1/jobs", jobs_list, "state kind label. sort cursor limit"},
+    {HTTP_POST, ROLE_SUBMIT, "api/v1/jobs", jobs_submit, ""},
+    {HTTP_POST, ROLE_READ, "api/v1/jobs:validate", jobs_validate, ""},
+    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}", job_show, ""},
+    {HTTP_DELETE, ROLE_ADMIN, "api/v1/jobs/{id}", job_delete, ""},
+    {HTTP_POST, ROLE_SUBMIT, "api/v1/jobs/{id}/cancel", job_cancel, ""},
+    {HTTP_POST, ROLE_SUBMIT, "api/v1/jobs/{id}/retry", job_retry, ""},
+    {HTTP_POST, ROLE_SUBMIT, "api/v1/jobs/{id}/hold", job_hold, ""},
+    {HTTP_POST, ROLE_SUBMIT, "api/v1/jobs/{id}/release", job_release, ""},
+    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/document", job_document, ""},
+    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/result", result_show, ""},
+    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/metrics", result_metrics, ""},
+    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/samples.csv", result_samples, ""},
+    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/artifacts/{name}", result_artifact, ""},
+    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/attempts", attempts_list, ""},
+    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/log", attempts_log, "attempt"},
+    {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/plots/{plot}.png", plot_job, "width height metric"},
+    {HTTP_GET, ROLE_READ, "api/v1/plots/overlay.png", plot_overlay, "jobs width height"},
+    {HTTP_GET, ROLE_READ, "api/v1/compare", compare_show, "jobs"},
+    {HTTP_GET, ROLE_ADMIN, "api/v1/database", database_show, ""},
+    {HTTP_GET, ROLE_READ, "api/v1/materials", catalogue_materials, ""},
+    {HTTP_GET, ROLE_READ, "api/v1/schemas/{name}", catalogue_schema, ""},
+    {HTTP_GET, ROLE_NONE, "openapi.json", catalogue_openapi_json, ""},
+    {HTTP_GET, ROLE_NONE, "openapi.yaml", catalogue_openapi_yaml, ""},
+    {HTTP_GET, ROLE_NONE, "healthz", health_live, ""},
+    {HTTP_GET, ROLE_NONE, "readyz", health_ready, ""},
+    {HTTP_GET, ROLE_READ, "metrics", health_metrics, ""},
+    {HTTP_GET, ROLE_NONE, "jobs/{id}", page_job, NULL},
 };
 
 /* Matches one segment; a parameter's value is put into *parameter (its suffix cut off). */
@@ -91,6 +94,7 @@ handler *route_find(struct request *request, struct reply *reply) {
       continue;
     }
     if (routes[i].method == request->method) {
+      request->known_query = routes[i].query;
       request->least_role = routes[i].role;
       return routes[i].handle;
     }

@@ -225,7 +225,9 @@ static enum MHD_Result exchange_answer(struct exchange *exchange) {
     return reply_send(exchange, &exchange->reply);
   }
   reply_init(&reply);
-  exchange->handle(&exchange->request, &reply);
+  if (request_query_known(&exchange->request, &reply)) {
+    exchange->handle(&exchange->request, &reply);
+  }
   if (reply.wait_job_id != 0) {
     return exchange_wait(exchange, &reply);
   }

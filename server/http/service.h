@@ -46,8 +46,10 @@ struct request {
   enum http_method method; /* HEAD counts as GET: the body is left out while sending */
   char *target;            /* as received, then cut into pieces by url_parse */
   struct url url;
+  const char *known_query;   /* names of the query parameters of the route, NULL: whatever */
   const char *parameters[2]; /* of the route, in order */
   int64_t job_id;            /* of the job that the request waits for */
+  bool job_is_new;           /* the request made that job: the reply says where it is */
   char *body;                /* NUL-terminated; NULL when empty */
   size_t body_size;
 };
@@ -113,10 +115,9 @@ const char *request_header(const struct request *request, const char *name);
 /* The first route parameter as a job id; otherwise replies 404 and returns false. */
 bool request_id(const struct request *request, struct reply *reply, int64_t *id);
 
-/* Whether every query parameter is one of the NULL-terminated names (a name ending in '.' allows
- * all that start with it); otherwise replies 400 and returns false. */
-bool request_query_known(const struct request *request, struct reply *reply,
-                         const char *const *names);
+/* Whether every query parameter is one of request->known_query; otherwise replies 400 and returns
+ * false. */
+bool request_query_known(const struct request *request, struct reply *reply);
 
 /* A whole number from the query within limits, `otherwise` when absent; replies 400 and returns
  * false when it is malformed. */

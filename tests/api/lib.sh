@@ -99,6 +99,7 @@ finish() {
 fetch() {
   local method=$1 path=$2
   shift 2
+  : > "$WORK/body"
   CODE=$(curl -s --path-as-is --max-time 90 -X "$method" -o "$WORK/body" -D "$WORK/head" \
     -w '%{http_code}' "$@" "$URL$path")
   BODY=$(tr -d '\0' < "$WORK/body")
