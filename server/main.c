@@ -14,6 +14,7 @@
 #include "server/base/log.h"
 #include "server/base/options.h"
 #include "server/exec/pool.h"
+#include "server/http/feed.h"
 #include "server/http/guard.h"
 #include "server/http/server.h"
 #include "server/http/waiters.h"
@@ -31,6 +32,12 @@ struct parts {
 
 static void job_changed(void *context, int64_t job_id) {
   server_job_changed(context, job_id);
+}
+
+static void job_progressed(void *context, int64_t job_id, int64_t attempt,
+                           const struct progress *progress) {
+  struct service *service = context;
+  feed_progress(service->feed, job_id, attempt, progress);
 }
 
 static enum status data_lock(const char *directory, int *lock, struct error *error) {
@@ -73,6 +80,9 @@ static enum status parts_open(const struct options *options, struct parts *parts
     status = waiters_create(&service->waiters, error);
   }
   if (status == STATUS_OK) {
+    status = feed_create(service->store, options->subscribers, &service->feed, error);
+  }
+  if (status == STATUS_OK) {
     struct pool_settings settings = {.store = service->store,
                                      .data = options->data,
                                      .solver = options->solver,
@@ -82,6 +92,7 @@ static enum status parts_open(const struct options *options, struct parts *parts
                                      .timeout_margin_s = options->timeout_margin_s,
                                      .retry_delay_s = options->retry_delay_s,
                                      .changed = job_changed,
+                                     .progressed = job_progressed,
                                      .context = service};
     status = pool_create(&settings, &service->pool, error);
   }
@@ -97,6 +108,7 @@ static enum status parts_open(const struct options *options, struct parts *parts
 static void parts_close(struct parts *parts) {
   server_destroy(parts->server); /* its handlers ask the pool */
   pool_destroy(parts->service.pool);
+  feed_destroy(parts->service.feed);
   waiters_destroy(parts->service.waiters);
   job_reader_destroy(parts->service.reader);
   store_close(parts->service.store);

@@ -35,6 +35,8 @@ static const struct option_row rows[] = {
         "for a request to arrive"),
     ROW(COUNT, 0, "connections-per-address", "N", connections_per_address, 1, 10000, "20",
         "open at the same time"),
+    ROW(COUNT, 0, "subscribers", "N", subscribers, 0, 10000, "200",
+        "clients that follow the events at the same time"),
     ROW(ACTION, 'h', "help", NULL, action, OPTIONS_HELP, 0, NULL, "print this text"),
     ROW(ACTION, 'V', "version", NULL, action, OPTIONS_VERSION, 0, NULL, "print the version"),
 };

@@ -15,6 +15,7 @@ struct options {
   unsigned executor;            /* index among the words of --executor */
   unsigned workers;
   unsigned connections_per_address;
+  unsigned subscribers; /* to the stream of events; their connections do not count as others do */
   uint64_t memory_limit_bytes; /* of one worker; 0: none */
   double drain_timeout_s;      /* how long running jobs may go on after SIGTERM */
   double time_limit_s;         /* of a job that sets no timeout */

@@ -50,6 +50,8 @@ static void slot_progressed(void *context, const struct progress *progress) {
   pthread_mutex_lock(&slot->pool->mutex);
   slot->progress = *progress;
   pthread_mutex_unlock(&slot->pool->mutex);
+  const struct pool_settings *settings = &slot->pool->settings;
+  settings->progressed(settings->context, slot->job_id, slot->attempt, progress);
 }
 
 static enum stop_cause slot_stop_wanted(void *context) {
@@ -74,7 +76,7 @@ static void slot_assign(struct slot *slot, const struct claim *claim) {
   slot->job_id = claim ? claim->job_id : 0;
   slot->attempt = claim ? claim->attempt : 0;
   slot->cancel = false;
-  slot->progress = (struct progress){.fraction = -1, .pressure_kPa = -1};
+  slot->progress = progress_none();
   if (claim) {
     pool->statistics.busy++;
     pool->statistics.attempts_started++;

@@ -20,6 +20,9 @@ struct pool_settings {
   double time_limit_s, timeout_margin_s, retry_delay_s;
   /* Called after every change of a job's state, from any of the pool's threads. */
   void (*changed)(void *context, int64_t job_id);
+  /* Called when a running job has reported, likewise. */
+  void (*progressed)(void *context, int64_t job_id, int64_t attempt,
+                     const struct progress *progress);
   void *context;
 };
 

@@ -94,7 +94,8 @@ static enum stop_cause run_watch(const struct run_hooks *hooks, const struct run
                                  struct process_end *end) {
   struct progress_reader reader = {.offset = 0};
   memcpy(reader.path, paths->events, sizeof reader.path);
-  struct progress progress = {.fraction = -1, .pressure_kPa = -1};
+  struct progress progress = progress_none();
+  pace_start(&reader.pace, clock_monotonic_ms());
   struct watch watch = {.timeout_at_ms = clock_monotonic_ms() + (int64_t)(1000 * time_limit_s)};
   if (hooks->started(hooks->context, process->pid) != STATUS_OK) {
     watch.cause = STOP_CANCEL;

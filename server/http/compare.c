@@ -127,7 +127,7 @@ void compare_show(struct request *request, struct reply *reply) {
   struct error error;
   int64_t ids[COMPARE_MAX];
   size_t count;
-  if (!request_query_jobs(request, reply, COMPARE_MAX, ids, &count)) {
+  if (!request_query_jobs(request, reply, "jobs", COMPARE_MAX, ids, &count)) {
     return;
   }
   if (comparison_read(request->service->store, ids, count, &comparison, &error) != STATUS_OK) {

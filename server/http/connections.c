@@ -97,7 +97,7 @@ void connections_expire(struct connections *connections) {
   pthread_mutex_lock(&connections->mutex);
   for (struct connection *at = connections->first; at; at = at->next) {
     int64_t limit = at->phase == CONNECTION_ANSWER ? ANSWER_MS : connections->timeout_ms;
-    if (at->ended || now - at->since_ms < limit) {
+    if (at->ended || at->phase == CONNECTION_STREAM || now - at->since_ms < limit) {
       continue;
     }
     if (at->phase != CONNECTION_ANSWER) {

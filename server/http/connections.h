@@ -13,7 +13,8 @@ struct connection;
 enum connection_phase {
   CONNECTION_HEADER, /* idle, or a header is arriving */
   CONNECTION_BODY,
-  CONNECTION_ANSWER
+  CONNECTION_ANSWER,
+  CONNECTION_STREAM /* an answer without an end */
 };
 
 /* timeout_ms: for the header, and again for the body. The caller owns *connections. */

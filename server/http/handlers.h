@@ -10,6 +10,9 @@ handler jobs_list, jobs_submit, jobs_validate;
 /* job.c: one job */
 handler job_show, job_delete, job_cancel, job_retry, job_hold, job_release, job_document;
 
+/* events.c: the stream of news */
+handler events_show;
+
 /* result.c: what came out of a job */
 handler result_show, result_metrics, result_samples, result_artifact;
 

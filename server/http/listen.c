@@ -3,8 +3,31 @@
 #include <arpa/inet.h>
 #include <stdbool.h>
 #include <string.h>
+#include <sys/resource.h>
 
-enum { THREADS = 4, CONNECTIONS_MAX = 500, IDLE_TIMEOUT_S = 15 };
+#include "server/base/log.h"
+
+enum {
+  THREADS = 4,
+  CONNECTIONS_MAX = 500, /* beside those that follow the events */
+  DESCRIPTORS_OWN = 300, /* for the database, workers, files that are being sent */
+  IDLE_TIMEOUT_S = 15
+};
+
+/* Raises the soft limit of open files as far as it is wanted and the hard limit allows. */
+static void descriptors_raise(rlim_t wanted) {
+  struct rlimit limit;
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= wanted) {
+    return;
+  }
+  rlim_t allowed = limit.rlim_max < wanted ? limit.rlim_max : wanted;
+  limit.rlim_cur = allowed;
+  if (setrlimit(RLIMIT_NOFILE, &limit) != 0 || allowed < wanted) {
+    log_line("only %llu open files are allowed (ulimit -n), %llu may be needed: some connections "
+             "will be refused",
+             (unsigned long long)allowed, (unsigned long long)wanted);
+  }
+}
 
 /* libmicrohttpd is to leave escapes alone: url_parse reads the target as it was sent. */
 static size_t keep_escapes(void *context, struct MHD_Connection *connection, char *text) {
@@ -24,14 +47,16 @@ enum status listen_start(const struct options *options, const struct listen_call
   unsigned flags =
       MHD_USE_EPOLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME | (is_six ? MHD_USE_IPv6 : 0U);
   void *context = calls->context;
+  descriptors_raise((rlim_t)CONNECTIONS_MAX + options->subscribers + DESCRIPTORS_OWN);
   *daemon = MHD_start_daemon(
       flags, (uint16_t)listen->port, NULL, NULL, calls->handle, context, MHD_OPTION_SOCK_ADDR,
       address, MHD_OPTION_THREAD_POOL_SIZE, (unsigned)THREADS, MHD_OPTION_PER_IP_CONNECTION_LIMIT,
-      options->connections_per_address, MHD_OPTION_CONNECTION_LIMIT, (unsigned)CONNECTIONS_MAX,
-      MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)IDLE_TIMEOUT_S, MHD_OPTION_STRICT_FOR_CLIENT, 1,
-      MHD_OPTION_URI_LOG_CALLBACK, calls->note_target, context, MHD_OPTION_UNESCAPE_CALLBACK,
-      keep_escapes, NULL, MHD_OPTION_NOTIFY_COMPLETED, calls->completed, context,
-      MHD_OPTION_NOTIFY_CONNECTION, calls->connection, context, MHD_OPTION_END);
+      options->connections_per_address, MHD_OPTION_CONNECTION_LIMIT,
+      CONNECTIONS_MAX + options->subscribers, MHD_OPTION_CONNECTION_TIMEOUT,
+      (unsigned)IDLE_TIMEOUT_S, MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_URI_LOG_CALLBACK,
+      calls->note_target, context, MHD_OPTION_UNESCAPE_CALLBACK, keep_escapes, NULL,
+      MHD_OPTION_NOTIFY_COMPLETED, calls->completed, context, MHD_OPTION_NOTIFY_CONNECTION,
+      calls->connection, context, MHD_OPTION_END);
   if (!*daemon) {
     return error_set(error, STATUS_IO, NULL, "Cannot listen on %s port %u.", listen->host,
                      listen->port);

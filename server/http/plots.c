@@ -101,7 +101,7 @@ void plot_job(struct request *request, struct reply *reply) {
 void plot_overlay(struct request *request, struct reply *reply) {
   int64_t ids[OVERLAY_MAX];
   size_t count;
-  if (request_query_jobs(request, reply, OVERLAY_MAX, ids, &count)) {
+  if (request_query_jobs(request, reply, "jobs", OVERLAY_MAX, ids, &count)) {
     plot_reply(request, reply, "overlay", ids, count);
   }
 }

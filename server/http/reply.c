@@ -17,6 +17,9 @@ void reply_clear(struct reply *reply) {
   if (reply->fd >= 0) {
     close(reply->fd);
   }
+  if (reply->stream.done) {
+    reply->stream.done(reply->stream.context);
+  }
   reply_init(reply);
 }
 
@@ -101,6 +104,12 @@ void reply_file(struct reply *reply, const char *content_type, const char *path)
   }
   reply->fd = fd;
   reply->size = (size_t)info.st_size;
+  reply->content_type = content_type;
+}
+
+void reply_stream(struct reply *reply, const char *content_type,
+                  const struct reply_stream *stream) {
+  reply->stream = *stream;
   reply->content_type = content_type;
 }
 

@@ -78,9 +78,9 @@ bool request_query_integer(const struct request *request, struct reply *reply, c
   return false;
 }
 
-bool request_query_jobs(const struct request *request, struct reply *reply, size_t limit,
-                        int64_t *ids, size_t *count) {
-  const char *rest = url_query(&request->url, "jobs");
+bool request_query_jobs(const struct request *request, struct reply *reply, const char *name,
+                        size_t limit, int64_t *ids, size_t *count) {
+  const char *rest = url_query(&request->url, name);
   bool fine = rest != NULL;
   *count = 0;
   while (fine && *count < limit && integer_read(rest, ',', &ids[*count], &rest)) {
@@ -96,7 +96,8 @@ bool request_query_jobs(const struct request *request, struct reply *reply, size
   }
   if (!fine || *count == 0 || *rest != '\0') {
     reply_problem(reply, 400, "invalid_query",
-                  "jobs: expected 1 to %zu different job ids, for example jobs=1,2,3.", limit);
+                  "%s: expected 1 to %zu different job ids, for example %s=1,2,3.", name, limit,
+                  name);
     return false;
   }
   return true;

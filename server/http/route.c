@@ -33,6 +33,7 @@ static const struct route {
     {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}/plots/{plot}.png", plot_job, "width height metric"},
     {HTTP_GET, ROLE_READ, "api/v1/plots/overlay.png", plot_overlay, "jobs width height"},
     {HTTP_GET, ROLE_READ, "api/v1/compare", compare_show, "jobs"},
+    {HTTP_GET, ROLE_READ, "api/v1/events", events_show, "job label. after"},
     {HTTP_GET, ROLE_ADMIN, "api/v1/database", database_show, ""},
     {HTTP_GET, ROLE_READ, "api/v1/materials", catalogue_materials, ""},
     {HTTP_GET, ROLE_READ, "api/v1/schemas/{name}", catalogue_schema, ""},

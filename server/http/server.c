@@ -9,6 +9,7 @@
 
 #include "server/base/clock.h"
 #include "server/http/connections.h"
+#include "server/http/feed.h"
 #include "server/http/guard.h"
 #include "server/http/listen.h"
 #include "server/http/route.h"
@@ -17,6 +18,7 @@
 enum {
   TICK_MS = 200,
   LAST_ANSWERS_MS = 1000,
+  STREAM_BLOCK = 4096,
   TARGET_MAX = 65536, /* more than libmicrohttpd takes */
   /* Bodies over the limit are read to their end, so that the client sees the answer, unless they
    * are longer than this. */
@@ -36,6 +38,7 @@ struct server {
 /* A request while libmicrohttpd delivers it in pieces. */
 struct exchange {
   struct request request;
+  struct connections *connections;
   struct reply reply; /* prepared before the body has been read, if status is not 0 */
   handler *handle;
   size_t body_room, received;
@@ -56,11 +59,21 @@ void server_job_changed(struct service *service, int64_t job_id) {
   job_record_clear(&record);
 }
 
+static struct connection *exchange_connection(const struct exchange *exchange) {
+  const union MHD_ConnectionInfo *info =
+      MHD_get_connection_info(exchange->request.connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
+  return info ? info->socket_context : NULL;
+}
+
 /* ---- sending ----------------------------------------------------------------------------- */
 
 static struct MHD_Response *response_make(struct reply *reply) {
   struct MHD_Response *response;
-  if (reply->fd >= 0) {
+  if (reply->stream.read) {
+    response = MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, STREAM_BLOCK, reply->stream.read,
+                                                 reply->stream.context, reply->stream.done);
+    reply->stream.done = response ? NULL : reply->stream.done;
+  } else if (reply->fd >= 0) {
     response = MHD_create_response_from_fd(reply->size, reply->fd);
     reply->fd = response ? -1 : reply->fd;
   } else if (reply->body) {
@@ -101,6 +114,9 @@ static enum MHD_Result reply_send(struct exchange *exchange, struct reply *reply
   enum MHD_Result result =
       MHD_queue_response(exchange->request.connection, reply->status, response);
   MHD_destroy_response(response);
+  if (reply->stream.read) {
+    connections_phase(exchange->connections, exchange_connection(exchange), CONNECTION_STREAM);
+  }
   if (reply->status / 100 < 6) {
     atomic_fetch_add(&exchange->request.service->requests[reply->status / 100], 1);
   }
@@ -109,12 +125,6 @@ static enum MHD_Result reply_send(struct exchange *exchange, struct reply *reply
 }
 
 /* ---- receiving --------------------------------------------------------------------------- */
-
-static struct connection *exchange_connection(const struct exchange *exchange) {
-  const union MHD_ConnectionInfo *info =
-      MHD_get_connection_info(exchange->request.connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
-  return info ? info->socket_context : NULL;
-}
 
 /* Whether a NUL byte hides the rest of the target: then the version, which follows it in the same
  * buffer, is further away than the target is long. */
@@ -247,6 +257,7 @@ static enum MHD_Result server_handle(void *context, struct MHD_Connection *conne
     exchange->phase = EXCHANGE_BODY;
     exchange->request.connection = connection;
     exchange->request.service = server->service;
+    exchange->connections = server->connections;
     exchange->request.caller.role = ROLE_ADMIN; /* no tokens are configured */
     exchange_open(exchange, method, version);
     connections_phase(server->connections, exchange_connection(exchange), CONNECTION_BODY);
@@ -373,10 +384,12 @@ void server_stop_accepting(struct server *server) {
   }
 }
 
-/* Answers those who still wait for a job, and gives all open requests a moment to be answered. */
+/* Answers those who still wait for a job, ends the streams of events, and gives all open requests a
+ * moment to be answered. */
 static void server_answer_waiting(struct server *server) {
   struct timespec pause = {.tv_nsec = 10000000};
   waiters_expire(server->service->waiters, true);
+  feed_close(server->service->feed);
   for (int i = 0; i < LAST_ANSWERS_MS / 10 && connections_busy(server->connections) > 0; i++) {
     nanosleep(&pause, NULL);
   }

@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <sys/types.h>
 
 #include "server/base/caller.h"
 #include "server/exec/pool.h"
@@ -14,6 +15,7 @@
 #include "server/store/store.h"
 
 struct MHD_Connection;
+struct feed;
 struct job_reader;
 struct waiters;
 
@@ -24,6 +26,7 @@ struct service {
   struct store *store;
   struct pool *pool;
   struct waiters *waiters;
+  struct feed *feed;         /* the stream of events */
   struct job_reader *reader; /* checks job documents */
   const char *data;          /* data directory */
   bool loopback;             /* listening on a loopback address: Host must be one too */
@@ -59,6 +62,14 @@ typedef void handler(struct request *request, struct reply *reply);
 
 enum { REPLY_HEADERS_MAX = 4 };
 
+/* A body without an end: read() fills a buffer as libmicrohttpd's readers do, done() is called once
+ * when the reply is over. */
+struct reply_stream {
+  ssize_t (*read)(void *context, uint64_t position, char *buffer, size_t room);
+  void (*done)(void *context);
+  void *context;
+};
+
 /* What a handler fills in. Exactly one of the bodies is used. */
 struct reply {
   unsigned status;
@@ -67,6 +78,7 @@ struct reply {
   const void *static_body; /* of the program itself */
   size_t size;
   int fd; /* -1, or an open file of `size` bytes, taken over */
+  struct reply_stream stream;
   struct {
     const char *name;
     char value[200];
@@ -100,6 +112,9 @@ void reply_static(struct reply *reply, const char *content_type, const void *dat
 /* Replies with a regular file, which is not followed if it is a link; 404 when it is missing. */
 void reply_file(struct reply *reply, const char *content_type, const char *path);
 
+/* Replies with a stream; stream->done is called in any case. */
+void reply_stream(struct reply *reply, const char *content_type, const struct reply_stream *stream);
+
 /* Replies with an RFC 9457 problem of an HTTP status of its own. */
 void reply_problem(struct reply *reply, unsigned status, const char *code, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
@@ -124,10 +139,10 @@ bool request_query_known(const struct request *request, struct reply *reply);
 bool request_query_integer(const struct request *request, struct reply *reply, const char *name,
                            int64_t low, int64_t high, int64_t otherwise, int64_t *value);
 
-/* The query parameter "jobs=1,2,3" as up to `limit` different ids; replies 400 and returns false
+/* The query parameter `name`, as in "jobs=1,2,3", as up to `limit` different ids; replies 400 and returns false
  * when it is missing or malformed. */
-bool request_query_jobs(const struct request *request, struct reply *reply, size_t limit,
-                        int64_t *ids, size_t *count);
+bool request_query_jobs(const struct request *request, struct reply *reply, const char *name,
+                        size_t limit, int64_t *ids, size_t *count);
 
 /* Seconds of "Prefer: wait=N", at most HTTP_WAIT_MAX_S, 0 when absent or malformed. */
 int64_t request_wait_s(const struct request *request);

@@ -15,6 +15,9 @@ enum { STORE_READERS = 8 };
 struct store {
   sqlite3 *writer; /* the only connection that writes and checkpoints */
   pthread_mutex_t writer_mutex;
+  bool event_written; /* by the open transaction; under the writer's mutex, like the two below */
+  void (*event_committed)(void *context);
+  void *event_context;
   sqlite3 *readers[STORE_READERS];
   bool reader_busy[STORE_READERS];
   pthread_mutex_t reader_mutex;

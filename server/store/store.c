@@ -136,7 +136,14 @@ enum status store_write_end(struct store *store, enum status status, struct erro
   if (status != STATUS_OK) {
     sqlite3_exec(store->writer, "ROLLBACK", NULL, NULL, NULL);
   }
+  void (*committed)(void *) =
+      store->event_written && status == STATUS_OK ? store->event_committed : NULL;
+  void *context = store->event_context;
+  store->event_written = false;
   pthread_mutex_unlock(&store->writer_mutex);
+  if (committed) {
+    committed(context);
+  }
   return status;
 }
 

@@ -173,6 +173,38 @@ enum status store_attempts(struct store *store, int64_t id, json_t **attempts, s
 enum status store_parameters(struct store *store, int64_t id, json_t **parameters,
                              struct error *error);
 
+/* ---- events ------------------------------------------------------------------------------ */
+
+/* A row of the history: a job has reached a state, or 'deleted'. Texts live as long as the call
+ * that hands it over. */
+struct job_event {
+  int64_t id;
+  int64_t at_ms;
+  int64_t job_id;
+  int64_t attempt;
+  const char *state, *reason_code;
+  const char *labels; /* of the job now, as a JSON object of strings */
+};
+
+/* From now on committed(context) is called after every transaction that wrote an event, on the
+ * thread that wrote it, with nothing locked. NULL ends that. */
+void store_watch_events(struct store *store, void (*committed)(void *context), void *context);
+
+/* The id of the newest event, 0 when there is none. */
+enum status store_event_last(struct store *store, int64_t *id, struct error *error);
+
+/* Hands up to `limit` events with ids above `after` to take(), in order, until it returns false.
+ * *count: how many it took. */
+enum status store_events(struct store *store, int64_t after, int limit,
+                         bool (*take)(void *context, const struct job_event *event), void *context,
+                         int *count, struct error *error);
+
+/* The labels of a job: an object of strings, empty when there is no such job. The caller owns
+ * *labels. */
+enum status store_labels(struct store *store, int64_t id, json_t **labels, struct error *error);
+
+/* ------------------------------------------------------------------------------------------ */
+
 /* Writes a consistent copy of the database, of one moment, to an empty or absent file. */
 enum status store_snapshot(struct store *store, const char *path, struct error *error);
 

@@ -163,7 +163,7 @@ static void take(struct progress *progress, const char *line) {
 }
 
 START_TEST(progress_takes_only_what_makes_sense) {
-  struct progress progress = {-1, -1};
+  struct progress progress = progress_none();
   take(&progress, "{\"event\":\"progress\",\"fraction\":0.25,\"pressure_kPa\":12.5}");
   ck_assert_double_eq(progress.fraction, 0.25);
   ck_assert_double_eq(progress.pressure_kPa, 12.5);
@@ -184,7 +184,7 @@ END_TEST
 
 START_TEST(progress_follows_a_growing_file) {
   struct progress_reader reader = {.offset = 0};
-  struct progress progress = {-1, -1};
+  struct progress progress = progress_none();
   strcpy(reader.path, "/tmp/pneulab-events-XXXXXX");
   ck_assert(!progress_poll(&reader, &progress)); /* not there yet */
   int fd = mkstemp(reader.path);
