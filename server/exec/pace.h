@@ -21,8 +21,9 @@ void pace_start(struct pace *pace, int64_t now_ms);
 void pace_take(struct pace *pace, int64_t now_ms, double fraction);
 
 /* The point from which the rate is to be measured at now_ms: the last one before the middle of the
- * time that has passed. A single long step thus cannot upset the estimate, and steps that become
- * slower and slower count for what they are. If nothing was gained since: the start. */
+ * time that has passed. What was slow at the beginning is forgotten, steps that become slower and
+ * slower count for what they are, and no single step decides. If nothing was gained since: the
+ * start. */
 struct pace_point pace_reference(const struct pace *pace, int64_t now_ms);
 
 #endif

@@ -68,9 +68,7 @@ static void watch_socket(struct MHD_Connection *connection) {
 
 static bool events_filter(const struct request *request, struct reply *reply,
                           struct event_filter *filter) {
-  static const char *const known[] = {"job", "label.", "after", NULL};
-  return request_query_known(request, reply, known) &&
-         (!url_query(&request->url, "job") ||
+  return (!url_query(&request->url, "job") ||
           request_query_jobs(request, reply, "job", EVENT_JOBS_MAX, filter->jobs,
                              &filter->job_count)) &&
          filter_labels(request, reply, filter);

@@ -1,6 +1,7 @@
 #include "server/http/feed.h"
 
 #include <microhttpd.h>
+#include <poll.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,18 +39,21 @@ struct feed {
   struct feed_ring ring;
   struct subscriber *first;
   unsigned count, limit;
+  int64_t looked_ms; /* when silent and vanished clients were looked for */
 };
 
 struct subscriber {
   struct feed *feed;
   struct subscriber *next, *previous;
   struct MHD_Connection *connection;
+  int socket;
   struct event_filter filter;
   struct feed_place place;
   int64_t sent_ms; /* when it was last given something */
   bool opened;     /* the first lines were sent */
   bool parked;     /* suspended: set and cleared together with the connection's state */
   bool quiet;      /* a comment is due */
+  bool gone;       /* the client has closed its side */
 };
 
 /* ---- publishing -------------------------------------------------------------------------- */
@@ -78,15 +82,24 @@ void feed_progress(struct feed *feed, int64_t job_id, int64_t attempt,
   pthread_mutex_unlock(&feed->mutex);
 }
 
+/* Whether the client has closed the connection: libmicrohttpd does not watch a suspended one. */
+static bool hung_up(int socket) {
+  struct pollfd watched = {.fd = socket, .events = POLLRDHUP};
+  return poll(&watched, 1, 0) > 0;
+}
+
 /* Resumes those for whom there is something; with `all`, everybody. Under the mutex. */
 static void feed_resume(struct feed *feed, bool all) {
   int64_t now = clock_monotonic_ms();
+  bool look = now - feed->looked_ms >= LOOK_MS;
+  feed->looked_ms = look ? now : feed->looked_ms;
   for (struct subscriber *at = feed->first; at; at = at->next) {
     if (!at->parked) {
       continue;
     }
     at->quiet = now - at->sent_ms >= KEEP_ALIVE_MS;
-    if (all || at->quiet || feed_ring_has(&feed->ring, &at->filter, &at->place)) {
+    at->gone = look && hung_up(at->socket);
+    if (all || at->quiet || at->gone || feed_ring_has(&feed->ring, &at->filter, &at->place)) {
       at->parked = false;
       MHD_resume_connection(at->connection);
     }
@@ -268,6 +281,9 @@ ssize_t feed_read(void *context, uint64_t position, char *buffer, size_t room) {
   bool behind = subscriber->opened && feed_ring_behind(&feed->ring, &subscriber->place);
   if (!subscriber->opened) {
     result = (ssize_t)read_opening(subscriber, buffer, room);
+  } else if (subscriber->gone) {
+    behind = false;
+    result = MHD_CONTENT_READER_END_WITH_ERROR;
   } else if (!behind) {
     result = (ssize_t)read_ring(subscriber, buffer, room);
     if (result == 0 && feed->closed) {
@@ -303,9 +319,12 @@ enum status feed_subscribe(struct feed *feed, struct MHD_Connection *connection,
                                "%u clients follow the events already, which is the limit.",
                                feed->limit);
   }
+  const union MHD_ConnectionInfo *info =
+      MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
   *made = (struct subscriber){.feed = feed,
                               .next = feed->first,
                               .connection = connection,
+                              .socket = info ? info->connect_fd : -1,
                               .filter = *filter,
                               .place = {.event_id = feed->ring.last},
                               .sent_ms = clock_monotonic_ms()};

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "server/base/clock.h"
+#include "server/http/event_text.h"
 #include "server/plot/plot.h"
 
 static json_t *time_view(int64_t unix_ms) {
@@ -15,15 +16,19 @@ static json_t *time_view(int64_t unix_ms) {
   return json_string(text);
 }
 
-static json_t *progress_view(const struct service *service, const struct job_record *record) {
-  struct progress progress;
-  if (job_state_terminal(record->state)) {
-    return record->state == JOB_STATE_SUCCEEDED ? json_real(1) : json_null();
+/* Adds "progress", a number, and "progress_detail", what a running job has reported. */
+static void progress_set(const struct service *service, const struct job_record *record,
+                         json_t *view) {
+  struct progress progress = progress_none();
+  bool terminal = job_state_terminal(record->state);
+  bool reported = !terminal && pool_progress(service->pool, record->id, &progress);
+  json_t *fraction = json_real(reported ? progress.fraction : 0);
+  if (terminal) {
+    json_decref(fraction);
+    fraction = record->state == JOB_STATE_SUCCEEDED ? json_real(1) : json_null();
   }
-  if (pool_progress(service->pool, record->id, &progress)) {
-    return json_real(progress.fraction);
-  }
-  return json_real(0);
+  json_object_set_new(view, "progress", fraction);
+  json_object_set_new(view, "progress_detail", reported ? progress_json(&progress) : json_null());
 }
 
 static void link_set(json_t *links, const char *name, int64_t id, const char *rest) {
@@ -90,13 +95,15 @@ static json_t *links_view(const struct job_record *record, const json_t *result)
 json_t *job_view(const struct service *service, const struct job_record *record,
                  const json_t *result) {
   json_t *view =
-      json_pack("{s:I, s:s, s:s, s:s, s:s, s:s, s:O, s:o, s:I, s:s, s:o, s:o, s:o}", "id",
+      json_pack("{s:I, s:s, s:s, s:s, s:s, s:s, s:O, s:I, s:s, s:o, s:o, s:o}", "id",
                 (json_int_t)record->id, "state", job_state_word(record->state), "reason_code",
                 record->reason_code, "message", record->message, "kind", record->kind, "name",
-                record->name, "labels", record->labels, "progress", progress_view(service, record),
-                "attempt", (json_int_t)record->attempt, "spec_hash", record->spec_hash, "created",
-                time_view(record->created_ms), "started", time_view(record->started_ms), "finished",
-                time_view(record->finished_ms));
+                record->name, "labels", record->labels, "attempt", (json_int_t)record->attempt,
+                "spec_hash", record->spec_hash, "created", time_view(record->created_ms), "started",
+                time_view(record->started_ms), "finished", time_view(record->finished_ms));
+  if (view) {
+    progress_set(service, record, view);
+  }
   if (view && record->retry_of != 0) {
     json_object_set_new(view, "retry_of", json_integer(record->retry_of));
   }

@@ -139,8 +139,8 @@ bool request_query_known(const struct request *request, struct reply *reply);
 bool request_query_integer(const struct request *request, struct reply *reply, const char *name,
                            int64_t low, int64_t high, int64_t otherwise, int64_t *value);
 
-/* The query parameter `name`, as in "jobs=1,2,3", as up to `limit` different ids; replies 400 and returns false
- * when it is missing or malformed. */
+/* The query parameter `name`, as in "jobs=1,2,3", as up to `limit` different ids; replies 400 and
+ * returns false when it is missing or malformed. */
 bool request_query_jobs(const struct request *request, struct reply *reply, const char *name,
                         size_t limit, int64_t *ids, size_t *count);
 

@@ -1,6 +1,7 @@
 /* The parts of the daemon that have an answer of their own: targets, hosts, options, progress,
  * the judgement of a worker's end. */
 #include <check.h>
+#include <math.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -182,6 +183,55 @@ START_TEST(progress_takes_only_what_makes_sense) {
 }
 END_TEST
 
+START_TEST(progress_tells_steps_and_iterations) {
+  struct progress progress = progress_none();
+  take(&progress, "{\"event\":\"progress\",\"fraction\":0.25,\"step\":3,\"steps\":12,"
+                  "\"iteration\":40}");
+  ck_assert_int_eq(progress.step, 3);
+  ck_assert_int_eq(progress.steps, 12);
+  ck_assert_int_eq(progress.iteration, 40);
+  ck_assert(isnan(progress.pressure_kPa));
+  take(&progress, "{\"event\":\"progress\",\"fraction\":0.5,\"step\":-3,\"steps\":\"x\"}");
+  ck_assert_int_eq(progress.step, 0);
+  ck_assert_int_eq(progress.steps, 0);
+  ck_assert_int_eq(progress.iteration, 0);
+}
+END_TEST
+
+/* The time left of a solve that took the given moments for equal parts, asked at the last. */
+static double time_left(const int64_t *at_ms, size_t count, double part) {
+  struct pace pace;
+  struct progress progress = progress_none();
+  pace_start(&pace, 0);
+  for (size_t i = 0; i < count; i++) {
+    progress.fraction = part * (double)(i + 1);
+    pace_take(&pace, at_ms[i], progress.fraction);
+  }
+  progress.since = pace_reference(&pace, at_ms[count - 1]);
+  return progress_left_s(&progress, at_ms[count - 1]);
+}
+
+START_TEST(pace_estimates_the_time_left) {
+  int64_t even[100], slower[8];
+  ck_assert_double_eq_tol(time_left((int64_t[]){1000, 2000, 3000, 4000}, 4, 0.1), 6, 1e-9);
+  ck_assert_double_eq(time_left((int64_t[]){100}, 1, 0.1), -1); /* too early */
+  for (int i = 0; i < 100; i++) {                               /* more points than are kept */
+    even[i] = 1000 * (i + 1);
+  }
+  ck_assert_double_eq_tol(time_left(even, 100, 0.005), 100, 3);
+  for (int i = 0; i < 8; i++) { /* every step takes longer than the one before */
+    slower[i] = 100 * (i + 1) * (i + 1);
+  }
+  double left = time_left(slower, 8, 0.1); /* 3.6 s by their law; 1.6 s by the mean rate */
+  ck_assert(left > 2 && left < 4.5);
+  int64_t slow_start[15] = {100};
+  for (int i = 1; i < 15; i++) { /* one long step, then short ones */
+    slow_start[i] = 1000 + 100 * i;
+  }
+  ck_assert_double_eq_tol(time_left(slow_start, 15, 0.05), 0.5, 1e-9);
+}
+END_TEST
+
 START_TEST(progress_follows_a_growing_file) {
   struct progress_reader reader = {.offset = 0};
   struct progress progress = progress_none();
@@ -280,6 +330,8 @@ int main(void) {
   tcase_add_test(tests, options_are_read);
   tcase_add_test(tests, options_are_refused_with_an_example);
   tcase_add_test(tests, progress_takes_only_what_makes_sense);
+  tcase_add_test(tests, progress_tells_steps_and_iterations);
+  tcase_add_test(tests, pace_estimates_the_time_left);
   tcase_add_test(tests, progress_follows_a_growing_file);
   tcase_add_loop_test(tests, workers_are_judged, 0, sizeof judgements / sizeof *judgements);
   tcase_add_test(tests, plain_names);
