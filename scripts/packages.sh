@@ -4,8 +4,8 @@
 build_packages=(
   build-essential autoconf automake pkg-config
   libmicrohttpd-dev libsqlite3-dev libsundials-dev libsuitesparse-dev libopenblas-dev libgsl-dev
-  libpng-dev zlib1g-dev libcairo2-dev libpango1.0-dev libjansson-dev libudunits2-dev libmd-dev check
-  fonts-dejavu-core curl jq python3-yaml sqlite3
+  libpng-dev zlib1g-dev libcairo2-dev libpango1.0-dev libjansson-dev libudunits2-dev libmd-dev
+  libseccomp-dev check fonts-dejavu-core curl jq python3-yaml sqlite3
 )
 test_packages=(chromium calculix-ccx python3 python3-jsonschema procps libmumps-seq-dev)
 # An npm from elsewhere comes with a Node.js that conflicts with those of Debian.

@@ -26,6 +26,7 @@ enum { SIGNAL_POLL_MS = 100 };
 /* The parts of the daemon in the order of their making. */
 struct parts {
   int lock; /* keeps a second daemon away from the data directory */
+  struct isolation isolation;
   struct service service;
   struct server *server;
 };
@@ -58,6 +59,16 @@ static enum status data_lock(const char *directory, int *lock, struct error *err
   return STATUS_OK;
 }
 
+static enum status isolate(const struct options *options, struct isolation *isolation,
+                           struct error *error) {
+  struct isolation_settings settings = {.mode = (enum isolation_mode)options->isolation,
+                                        .launcher = options->launcher,
+                                        .read = options->worker_read,
+                                        .write = options->worker_write,
+                                        .nice = options->worker_nice};
+  return isolation_open(&settings, isolation, error);
+}
+
 static enum status parts_open(const struct options *options, struct parts *parts,
                               struct error *error) {
   struct service *service = &parts->service;
@@ -83,9 +94,13 @@ static enum status parts_open(const struct options *options, struct parts *parts
     status = feed_create(service->store, options->subscribers, &service->feed, error);
   }
   if (status == STATUS_OK) {
+    status = isolate(options, &parts->isolation, error);
+  }
+  if (status == STATUS_OK) {
     struct pool_settings settings = {.store = service->store,
                                      .data = options->data,
                                      .solver = options->solver,
+                                     .isolation = &parts->isolation,
                                      .workers = options->workers,
                                      .memory_limit_bytes = options->memory_limit_bytes,
                                      .time_limit_s = options->time_limit_s,
@@ -109,6 +124,7 @@ static void parts_close(struct parts *parts) {
   server_destroy(parts->server); /* its handlers ask the pool */
   pool_destroy(parts->service.pool);
   feed_destroy(parts->service.feed);
+  isolation_release(&parts->isolation);
   waiters_destroy(parts->service.waiters);
   job_reader_destroy(parts->service.reader);
   store_close(parts->service.store);

@@ -9,8 +9,13 @@
 #include "solver/base/error.h"
 
 struct options {
-  char data[PATH_MAX];          /* data directory */
-  char solver[PATH_MAX];        /* path of pneulab-solve, or a bare name looked up in PATH */
+  char data[PATH_MAX];     /* data directory */
+  char solver[PATH_MAX];   /* path of pneulab-solve, or a bare name looked up in PATH */
+  char launcher[PATH_MAX]; /* path of pneulab-launch, or "" */
+  unsigned isolation;      /* enum isolation_mode */
+  char worker_read[4096];  /* further paths of workers, joined by commas */
+  char worker_write[4096];
+  unsigned worker_nice;
   struct option_address listen; /* where to listen */
   unsigned executor;            /* index among the words of --executor */
   unsigned workers;

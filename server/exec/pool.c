@@ -147,6 +147,7 @@ static void slot_run(struct slot *slot, const struct claim *claim) {
   const struct pool_settings *settings = &slot->pool->settings;
   struct run_settings run = {.data = settings->data,
                              .solver = settings->solver,
+                             .isolation = settings->isolation,
                              .memory_limit_bytes = settings->memory_limit_bytes,
                              .study_jobs = study_jobs(settings),
                              .time_limit_s = settings->time_limit_s,

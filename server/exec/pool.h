@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "server/exec/isolation.h"
 #include "server/exec/progress.h"
 #include "server/store/store.h"
 
@@ -13,8 +14,9 @@ struct pool;
 
 struct pool_settings {
   struct store *store;
-  const char *data;   /* data directory; lives as long as the pool */
-  const char *solver; /* likewise */
+  const char *data;                  /* data directory; lives as long as the pool */
+  const char *solver;                /* likewise */
+  const struct isolation *isolation; /* likewise */
   unsigned workers;
   uint64_t memory_limit_bytes;
   double time_limit_s, timeout_margin_s, retry_delay_s;

@@ -12,16 +12,71 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static void child_limit(int resource, uint64_t soft, uint64_t hard) {
-  if (soft != 0) {
-    struct rlimit limit = {.rlim_cur = soft, .rlim_max = hard};
-    setrlimit((__rlimit_resource_t)resource, &limit);
+enum { REPORT_FD = 3 };
+enum { ARGUMENTS_MAX = 2 * (2 * ISOLATION_PATHS_MAX + 1) + 48, NUMBER_SIZE = 24 };
+
+/* The command line of the launcher. */
+struct command {
+  const char *argv[ARGUMENTS_MAX];
+  size_t count;
+  char numbers[8][NUMBER_SIZE];
+  size_t number_count;
+};
+
+static void command_add(struct command *command, const char *argument) {
+  if (command->count + 1 < ARGUMENTS_MAX) {
+    command->argv[command->count++] = argument;
   }
 }
 
-/* Between fork and exec in a program with threads: async-signal-safe calls only. */
-static int child_prepare(pid_t parent, int input, int output, int errors,
-                         const struct process_limits *limits) {
+static void command_number(struct command *command, const char *option, uint64_t value) {
+  char *text = command->numbers[command->number_count++];
+  snprintf(text, NUMBER_SIZE, "%llu", (unsigned long long)value);
+  command_add(command, option);
+  command_add(command, text);
+}
+
+static void command_paths(struct command *command, const char *option, const char *const *paths) {
+  for (; *paths; paths++) {
+    command_add(command, option);
+    command_add(command, *paths);
+  }
+}
+
+static void command_make(struct command *command, const char *const *argv, const char *directory,
+                         const struct process_limits *limits, const struct isolation *isolation) {
+  *command = (struct command){.count = 0};
+  command_add(command, isolation->launcher);
+  command_number(command, "--parent", (uint64_t)getpid());
+  command_number(command, "--report", REPORT_FD);
+  command_number(command, "--memory", limits->memory_bytes);
+  command_number(command, "--cpu", limits->cpu_s);
+  command_number(command, "--file", limits->file_bytes);
+  command_number(command, "--descriptors", limits->descriptors);
+  command_number(command, "--processes", limits->processes);
+  command_number(command, "--nice", isolation->nice);
+  if (isolation->namespaces) {
+    command_add(command, "--namespaces");
+  }
+  if (isolation->seccomp) {
+    command_add(command, "--seccomp");
+  }
+  if (isolation->landlock) {
+    command_add(command, "--landlock");
+  }
+  command_add(command, "--write");
+  command_add(command, directory);
+  command_paths(command, "--write", isolation->write);
+  command_paths(command, "--read", isolation->read);
+  command_add(command, "--");
+  for (; *argv; argv++) {
+    command_add(command, *argv);
+  }
+}
+
+/* Between fork and exec in a program with threads: async-signal-safe calls only. files: standard
+ * input, output, error, and where to report. */
+static int child_prepare(pid_t parent, const int files[4]) {
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, NULL);
@@ -30,36 +85,33 @@ static int child_prepare(pid_t parent, int input, int output, int errors,
   if (setpgid(0, 0) != 0 || prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() != parent) {
     return errno ? errno : ESRCH;
   }
-  child_limit(RLIMIT_DATA, limits->memory_bytes, limits->memory_bytes);
-  child_limit(RLIMIT_CPU, limits->cpu_s, limits->cpu_s + 5);
-  child_limit(RLIMIT_FSIZE, limits->file_bytes, limits->file_bytes);
-  struct rlimit no_core = {0, 0};
-  setrlimit(RLIMIT_CORE, &no_core);
-  if (dup2(input, STDIN_FILENO) < 0 || dup2(output, STDOUT_FILENO) < 0 ||
-      dup2(errors, STDERR_FILENO) < 0) {
-    return errno;
+  for (int i = 0; i < 4; i++) { /* the daemon has descriptors 0 to 2 open: nothing is run over */
+    if (dup2(files[i], i) < 0) {
+      return errno;
+    }
   }
-  close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);
-  return 0;
+  close_range(REPORT_FD + 1, ~0U, CLOSE_RANGE_CLOEXEC);
+  return fcntl(REPORT_FD, F_SETFD, 0) == 0 ? 0 : errno; /* it may have been there already */
 }
 
-/* Forks and executes; the child reports why exec failed through a pipe that a success closes. */
-static enum status process_fork(const char *const *argv, const int files[3],
-                                const struct process_limits *limits, struct process *process,
-                                struct error *error) {
+/* Forks and executes; what prevents the start comes as a sentence through a pipe, which a success
+ * closes. */
+static enum status process_fork(const struct command *command, int files[4],
+                                struct process *process, struct error *error) {
   int report[2];
+  char sentence[400];
   if (pipe2(report, O_CLOEXEC) != 0) {
     return error_set(error, STATUS_IO, NULL, "Cannot create a pipe: %s.", strerrordesc_np(errno));
   }
+  files[REPORT_FD] = report[1];
   pid_t parent = getpid();
   pid_t pid = fork();
   if (pid == 0) {
-    int reason = child_prepare(parent, files[0], files[1], files[2], limits);
-    if (reason == 0) {
-      execvp(argv[0], (char *const *)argv);
-      reason = errno;
+    if (child_prepare(parent, files) == 0) {
+      execv(command->argv[0], (char *const *)(uintptr_t)command->argv);
     }
-    ssize_t ignored = write(report[1], &reason, sizeof reason);
+    static const char failed[] = "Cannot run the launcher of workers.";
+    ssize_t ignored = write(report[1], failed, sizeof failed - 1);
     (void)ignored;
     _exit(127);
   }
@@ -70,33 +122,35 @@ static enum status process_fork(const char *const *argv, const int files[3],
     return error_set(error, STATUS_IO, NULL, "Cannot start a process: %s.",
                      strerrordesc_np(fork_reason));
   }
-  int reason = 0;
   ssize_t got;
   do {
-    got = read(report[0], &reason, sizeof reason);
+    got = read(report[0], sentence, sizeof sentence - 1);
   } while (got < 0 && errno == EINTR);
   close(report[0]);
   if (got > 0) {
+    sentence[got] = '\0';
     waitpid(pid, NULL, 0);
-    return error_set(error, STATUS_NOT_FOUND, NULL, "Cannot run %s: %s.", argv[0],
-                     strerrordesc_np(reason));
+    return error_set(error, STATUS_NOT_FOUND, NULL, "%s", sentence);
   }
   *process = (struct process){.pid = pid, .pidfd = (int)syscall(SYS_pidfd_open, pid, 0)};
   return STATUS_OK;
 }
 
 enum status process_start(const char *const *argv, const char *output_path, const char *error_path,
-                          const struct process_limits *limits, struct process *process,
+                          const char *directory, const struct process_limits *limits,
+                          const struct isolation *isolation, struct process *process,
                           struct error *error) {
   int flags = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW;
-  int files[3] = {open("/dev/null", O_RDONLY | O_CLOEXEC), open(output_path, flags, 0644),
-                  open(error_path, flags | O_APPEND, 0644)};
+  int files[4] = {open("/dev/null", O_RDONLY | O_CLOEXEC), open(output_path, flags, 0644),
+                  open(error_path, flags | O_APPEND, 0644), -1};
   enum status status;
+  struct command command;
   if (files[0] < 0 || files[1] < 0 || files[2] < 0) {
     status = error_set(error, STATUS_IO, NULL, "Cannot create %s: %s.", output_path,
                        strerrordesc_np(errno));
   } else {
-    status = process_fork(argv, files, limits, process, error);
+    command_make(&command, argv, directory, limits, isolation);
+    status = process_fork(&command, files, process, error);
   }
   for (int i = 0; i < 3; i++) {
     if (files[i] >= 0) {
@@ -127,7 +181,6 @@ bool process_wait(struct process *process, int timeout_ms, struct process_end *e
                  1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
     end->peak_memory_MB = (double)usage.ru_maxrss / 1024;
   }
-  kill(-process->pid, SIGKILL);
   if (process->pidfd >= 0) {
     close(process->pidfd);
   }
@@ -135,6 +188,13 @@ bool process_wait(struct process *process, int timeout_ms, struct process_end *e
   return true;
 }
 
-void process_signal(const struct process *process, int signal) {
-  kill(-process->pid, signal);
+void process_terminate(const struct process *process) {
+  kill(process->pid, SIGTERM);
+}
+
+void process_kill(struct process *process) {
+  /* The launcher is to see that nothing is left; one that cannot any more takes the rest with it.
+   */
+  kill(process->pid, process->ending ? SIGKILL : SIGHUP);
+  process->ending = true;
 }

@@ -1,4 +1,5 @@
-/* One child process in a process group of its own, with limits. */
+/* One worker process, started through pneulab-launch, which limits it, shuts it in and ends
+ * everything it leaves behind. */
 #ifndef PNEULAB_EXEC_PROCESS_H
 #define PNEULAB_EXEC_PROCESS_H
 
@@ -6,17 +7,22 @@
 #include <stdint.h>
 #include <sys/types.h>
 
+#include "server/exec/isolation.h"
 #include "solver/base/error.h"
 
+/* Numbers of 0 set no limit. */
 struct process_limits {
-  uint64_t memory_bytes; /* of private writable memory (RLIMIT_DATA); 0: none */
-  uint64_t cpu_s;        /* of processor time; 0: none */
-  uint64_t file_bytes;   /* of any file it writes; 0: none */
+  uint64_t memory_bytes; /* private writable memory of each process (RLIMIT_DATA) */
+  uint64_t cpu_s;        /* processor time of each process */
+  uint64_t file_bytes;   /* size of any file it writes */
+  unsigned descriptors;  /* open files of each process */
+  unsigned processes;    /* processes and threads in all */
 };
 
 struct process {
-  pid_t pid; /* also the id of its group */
+  pid_t pid; /* of its launcher, which ends last and as the worker did */
   int pidfd;
+  bool ending; /* its end has been demanded */
 };
 
 struct process_end {
@@ -27,18 +33,22 @@ struct process_end {
 };
 
 /* Starts argv[0] (looked up in PATH when it has no slash), standard input empty, standard output
- * and error written to the two files. The child is killed when the calling thread ends, so the
- * thread that starts a process also waits for it. STATUS_NOT_FOUND when the program cannot be run,
- * else STATUS_IO. */
+ * and error written to the two files, with `directory` as the folder it may write. The child is
+ * ended when the calling thread ends, so the thread that starts a process also waits for it.
+ * STATUS_NOT_FOUND when the program cannot be run, else STATUS_IO. */
 enum status process_start(const char *const *argv, const char *output_path, const char *error_path,
-                          const struct process_limits *limits, struct process *process,
+                          const char *directory, const struct process_limits *limits,
+                          const struct isolation *isolation, struct process *process,
                           struct error *error);
 
-/* Waits up to timeout_ms for the end. When it has ended: fills *end, kills what is left of its
- * group, releases *process and returns true. */
+/* Waits up to timeout_ms for the end of the worker and of everything it started. Then fills *end,
+ * releases *process and returns true. */
 bool process_wait(struct process *process, int timeout_ms, struct process_end *end);
 
-/* Sends a signal to the whole group. */
-void process_signal(const struct process *process, int signal);
+/* Asks the worker's process group to end (SIGTERM). */
+void process_terminate(const struct process *process);
+
+/* Kills the worker with everything it started. To be repeated until process_wait tells the end. */
+void process_kill(struct process *process);
 
 #endif

@@ -9,7 +9,14 @@
 #include "server/base/file.h"
 #include "server/base/log.h"
 
-enum { POLL_MS = 250, GRACE_MS = 5000, POLL_FIRST_MS = 20, OUTPUT_BYTES_MAX = 256 << 20 };
+enum {
+  POLL_MS = 250,
+  GRACE_MS = 5000,
+  POLL_FIRST_MS = 20,
+  OUTPUT_BYTES_MAX = 256 << 20,
+  DESCRIPTORS_MAX = 512,
+  PROCESSES_MAX = 64
+};
 
 /* The paths of one attempt; room for the longest name after the data directory. */
 struct run_paths {
@@ -65,13 +72,16 @@ static enum status run_start(const struct run_settings *settings, const struct r
       "--jobs",         jobs,    paths->job,       NULL};
   struct process_limits limits = {.memory_bytes = settings->memory_limit_bytes,
                                   .cpu_s = (uint64_t)ceil(time_limit_s) + 1,
-                                  .file_bytes = OUTPUT_BYTES_MAX};
-  return process_start(argv, paths->output, paths->log, &limits, process, error);
+                                  .file_bytes = OUTPUT_BYTES_MAX,
+                                  .descriptors = DESCRIPTORS_MAX,
+                                  .processes = PROCESSES_MAX + settings->study_jobs};
+  return process_start(argv, paths->output, paths->log, paths->directory, &limits,
+                       settings->isolation, process, error);
 }
 
 /* Asks the worker to end when somebody wants that, and insists after a while. */
 static void watch_step(struct watch *watch, const struct run_hooks *hooks,
-                       const struct process *process) {
+                       struct process *process) {
   int64_t now = clock_monotonic_ms();
   enum stop_cause wanted = hooks->stop_wanted(hooks->context);
   if (wanted == STOP_NONE && now >= watch->timeout_at_ms) {
@@ -79,13 +89,13 @@ static void watch_step(struct watch *watch, const struct run_hooks *hooks,
   }
   if (wanted == STOP_ABORT) {
     watch->cause = watch->cause == STOP_NONE ? STOP_SHUTDOWN : watch->cause;
-    process_signal(process, SIGKILL);
+    process_kill(process);
   } else if (watch->cause == STOP_NONE && wanted != STOP_NONE) {
     watch->cause = wanted;
     watch->kill_at_ms = now + GRACE_MS;
-    process_signal(process, SIGTERM);
+    process_terminate(process);
   } else if (watch->cause != STOP_NONE && now >= watch->kill_at_ms) {
-    process_signal(process, SIGKILL);
+    process_kill(process);
   }
 }
 
@@ -100,7 +110,7 @@ static enum stop_cause run_watch(const struct run_hooks *hooks, const struct run
   if (hooks->started(hooks->context, process->pid) != STATUS_OK) {
     watch.cause = STOP_CANCEL;
     watch.kill_at_ms = clock_monotonic_ms() + GRACE_MS;
-    process_signal(process, SIGTERM);
+    process_terminate(process);
   }
   int wait_ms = POLL_FIRST_MS;
   while (!process_wait(process, wait_ms, end)) {

@@ -11,6 +11,7 @@
 struct run_settings {
   const char *data;   /* data directory */
   const char *solver; /* program to run */
+  const struct isolation *isolation;
   uint64_t memory_limit_bytes; /* of each process */
   unsigned study_jobs;         /* members of a study that its worker may solve at a time */
   double time_limit_s;

@@ -24,8 +24,10 @@ for tool in curl jq sqlite3; do
   command -v $tool > /dev/null || { echo "SKIP: $tool is not installed"; exit 77; }
 done
 
-# start_daemon OPTION...: sets DAEMON_PID, PORT and URL.
+# start_daemon OPTION...: sets DAEMON_PID, PORT and URL. Stand-ins of the solver may write to WORK
+# unless CONFINED is set.
 start_daemon() {
+  [ -n "${CONFINED:-}" ] || set -- --worker-write "$WORK" "$@"
   : > "$WORK/stdout"
   "$BIN/pneulabd" --data "$DATA" --listen 127.0.0.1:0 "$@" > "$WORK/stdout" 2>> "$WORK/stderr" &
   DAEMON_PID=$!
