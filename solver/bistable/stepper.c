@@ -1,12 +1,10 @@
 #include "solver/bistable/stepper.h"
 
-#include <cvodes/cvodes.h>
 #include <math.h>
-#include <nvector/nvector_serial.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunmatrix/sunmatrix_dense.h>
+
+#include "solver/hlpv/ode.h"
 
 /* Acceleration in m/s2 by which the plate may pull at the load before they part: less is round-off
  * of a state at rest. */
@@ -18,43 +16,36 @@
 struct stepper {
   struct bistable_system *system;
   double size[SYSTEM_STATES_MAX];
-  double stop;
-  SUNContext context;
-  void *cvode;
-  N_Vector x, tolerance;
-  SUNMatrix jacobian;
-  SUNLinearSolver solver;
+  struct ode *ode;
 };
 
-/* ---- what CVODE calls --------------------------------------------------------------------- */
+/* ---- the motion as an initial value problem ----------------------------------------------- */
 
-static int derivative(double time, N_Vector x, N_Vector rate, void *context) {
+static bool derivative(void *context, double time, const double x[], double rate[]) {
   struct stepper *s = context;
-  return system_derivative(s->system, time, NV_DATA_S(x), NV_DATA_S(rate)) ? 0 : 1;
+  return system_derivative(s->system, time, x, rate);
 }
 
 /* Forward differences by steps of the size of each state: those that CVODE takes by itself drown in
  * round-off where a state is 0, as speeds are at the start, and Newton's method then seems to
  * converge at once. */
-static int jacobian(double time, N_Vector x, N_Vector rate, SUNMatrix matrix, void *context,
-                    N_Vector work1, N_Vector work2, N_Vector work3) {
-  (void)work1, (void)work2, (void)work3;
+static bool jacobian(void *context, double time, const double x[], const double rate[],
+                     double *const column[]) {
   struct stepper *s = context;
-  double *state = NV_DATA_S(x), moved[SYSTEM_STATES_MAX];
+  double state[SYSTEM_STATES_MAX], moved[SYSTEM_STATES_MAX];
+  memcpy(state, x, (size_t)s->system->states * sizeof *x);
   for (int j = 0; j < s->system->states; j++) {
-    double kept = state[j], step = DIFFERENCE * fmax(fabs(kept), s->size[j]);
-    state[j] = kept + step;
-    bool good = system_derivative(s->system, time, state, moved);
-    step = state[j] - kept;
-    state[j] = kept;
-    if (!good) {
-      return 1;
+    state[j] = x[j] + DIFFERENCE * fmax(fabs(x[j]), s->size[j]);
+    double step = state[j] - x[j];
+    if (!system_derivative(s->system, time, state, moved)) {
+      return false;
     }
+    state[j] = x[j];
     for (int i = 0; i < s->system->states; i++) {
-      SM_ELEMENT_D(matrix, i, j) = (moved[i] - NV_Ith_S(rate, i)) / step;
+      column[j][i] = (moved[i] - rate[i]) / step;
     }
   }
-  return 0;
+  return true;
 }
 
 static double or_one(double value) {
@@ -84,135 +75,73 @@ bool stepper_roots(struct bistable_system *system, double time, const double x[]
   return true;
 }
 
-static int roots(double time, N_Vector x, double *value, void *context) {
+static bool roots(void *context, double time, const double x[], double root[]) {
   struct stepper *s = context;
-  return stepper_roots(s->system, time, NV_DATA_S(x), value) ? 0 : -1;
+  return stepper_roots(s->system, time, x, root);
 }
 
 /* ---- creation ----------------------------------------------------------------------------- */
 
-/* Failures come back as flags, and are not written to standard error. */
-static bool set_up(struct stepper *s) {
-  int direction[SYSTEM_ROOTS_MAX], count = s->system->spec->cell_count * ROOTS_PER_CELL + 1;
-  for (int i = 0; i < count; i++) {
-    direction[i] = -1;
-  }
-  s->cvode = CVodeCreate(CV_BDF, s->context);
-  return s->cvode && CVodeSetErrFile(s->cvode, NULL) == CV_SUCCESS &&
-         CVodeInit(s->cvode, derivative, 0.0, s->x) == CV_SUCCESS &&
-         CVodeSetUserData(s->cvode, s) == CV_SUCCESS &&
-         CVodeSVtolerances(s->cvode, s->system->spec->tolerance, s->tolerance) == CV_SUCCESS &&
-         CVodeSetLinearSolver(s->cvode, s->solver, s->jacobian) == CV_SUCCESS &&
-         CVodeSetJacFn(s->cvode, jacobian) == CV_SUCCESS &&
-         CVodeRootInit(s->cvode, count, roots) == CV_SUCCESS &&
-         CVodeSetRootDirection(s->cvode, direction) == CV_SUCCESS &&
-         CVodeSetNoInactiveRootWarn(s->cvode) == CV_SUCCESS;
-}
-
 enum status stepper_create(struct bistable_system *system, const double size[],
                            struct stepper **stepper, struct error *error) {
+  int direction[SYSTEM_ROOTS_MAX], count = system->spec->cell_count * ROOTS_PER_CELL + 1;
   struct stepper *s = calloc(1, sizeof *s);
   *stepper = NULL;
-  if (!s || SUNContext_Create(NULL, &s->context) != 0) {
-    free(s);
+  if (!s) {
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the integrator");
   }
   s->system = system;
-  s->x = N_VNew_Serial(system->states, s->context);
-  s->tolerance = N_VNew_Serial(system->states, s->context);
-  s->jacobian = SUNDenseMatrix(system->states, system->states, s->context);
-  if (s->x && s->tolerance && s->jacobian) {
-    N_VConst(0.0, s->x);
-    for (int i = 0; i < system->states; i++) {
-      s->size[i] = size[i];
-      NV_Ith_S(s->tolerance, i) = system->spec->tolerance * size[i];
-    }
-    s->solver = SUNLinSol_Dense(s->x, s->jacobian, s->context);
+  memcpy(s->size, size, (size_t)system->states * sizeof *size);
+  for (int i = 0; i < count; i++) {
+    direction[i] = -1;
   }
-  if (!s->solver || !set_up(s)) {
-    stepper_destroy(s);
-    return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the integrator");
+  struct ode_problem problem = {.states = system->states,
+                                .method = ODE_BDF,
+                                .tolerance = system->spec->tolerance,
+                                .size = size,
+                                .root_count = count,
+                                .direction = direction,
+                                .derivative = derivative,
+                                .jacobian = jacobian,
+                                .roots = roots,
+                                .context = s};
+  enum status status = ode_create(&problem, &s->ode, error);
+  if (status != STATUS_OK) {
+    free(s);
+    return status;
   }
   *stepper = s;
   return STATUS_OK;
 }
 
 void stepper_destroy(struct stepper *s) {
-  if (!s) {
-    return;
+  if (s) {
+    ode_destroy(s->ode);
+    free(s);
   }
-  if (s->cvode) {
-    CVodeFree(&s->cvode);
-  }
-  if (s->solver) {
-    SUNLinSolFree(s->solver);
-  }
-  if (s->jacobian) {
-    SUNMatDestroy(s->jacobian);
-  }
-  if (s->tolerance) {
-    N_VDestroy(s->tolerance);
-  }
-  if (s->x) {
-    N_VDestroy(s->x);
-  }
-  SUNContext_Free(&s->context);
-  free(s);
 }
 
 /* ---- integration -------------------------------------------------------------------------- */
 
 enum status stepper_restart(struct stepper *s, double time, const double x[], double stop,
                             struct error *error) {
-  s->stop = stop;
-  memcpy(NV_DATA_S(s->x), x, (size_t)s->system->states * sizeof *x);
-  if (CVodeReInit(s->cvode, time, s->x) != CV_SUCCESS ||
-      CVodeSetStopTime(s->cvode, stop) != CV_SUCCESS) {
-    return error_set(error, STATUS_INTERNAL, NULL, "the integrator refuses its state at %.9g s",
-                     time);
-  }
-  return STATUS_OK;
+  return ode_restart(s->ode, time, x, stop, error);
 }
 
 enum status stepper_step(struct stepper *s, double *time, double x[], bool passed[SYSTEM_ROOTS_MAX],
                          struct error *error) {
-  int found[SYSTEM_ROOTS_MAX] = {0}, count = s->system->spec->cell_count * ROOTS_PER_CELL + 1;
-  memset(passed, 0, SYSTEM_ROOTS_MAX * sizeof *passed);
-  int flag = CVode(s->cvode, s->stop, s->x, time, CV_ONE_STEP);
-  if (flag == CV_ILL_INPUT) {
-    /* Two roots closer than round-off, as of a state at rest: what follows is a fresh start. */
-    memcpy(NV_DATA_S(s->x), x, (size_t)s->system->states * sizeof *x);
-    CVodeReInit(s->cvode, *time, s->x);
-    CVodeSetStopTime(s->cvode, s->stop);
-    flag = CVode(s->cvode, s->stop, s->x, time, CV_ONE_STEP);
+  int found[SYSTEM_ROOTS_MAX] = {0};
+  enum status status = ode_step(s->ode, time, x, found, error);
+  for (int i = 0; i < SYSTEM_ROOTS_MAX; i++) {
+    passed[i] = found[i] != 0;
   }
-  if (flag == CV_TOO_CLOSE) {
-    *time = s->stop; /* what is left is round-off */
-  } else if (flag < 0) {
-    return error_set(error, STATUS_DIVERGED, NULL,
-                     "no step of the integration meets the tolerance after %.9g s (CVODE: %d)",
-                     *time, flag);
-  } else if (flag == CV_ROOT_RETURN && CVodeGetRootInfo(s->cvode, found) == CV_SUCCESS) {
-    for (int i = 0; i < count; i++) {
-      passed[i] = found[i] != 0;
-    }
-  }
-  memcpy(x, NV_DATA_S(s->x), (size_t)s->system->states * sizeof *x);
-  return STATUS_OK;
+  return status;
 }
 
 void stepper_interpolate(struct stepper *s, double time, double x[]) {
-  /* CVODE keeps s->x apart from its history, so that it may serve as output here. */
-  if (CVodeGetDky(s->cvode, time, 0, s->x) == CV_SUCCESS) {
-    memcpy(x, NV_DATA_S(s->x), (size_t)s->system->states * sizeof *x);
-  }
+  ode_interpolate(s->ode, time, x);
 }
 
 void stepper_count(struct stepper *s, struct hlpv_counts *counts) {
-  long steps = 0, evaluations = 0;
-  CVodeGetNumSteps(s->cvode, &steps);
-  CVodeGetNumRhsEvals(s->cvode, &evaluations);
-  counts->steps += steps;
-  counts->evaluations += evaluations;
-  counts->restarts++;
+  ode_count(s->ode, counts);
 }
