@@ -7,15 +7,17 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include "server/auth/token_command.h"
 #include "server/base/clock.h"
 #include "server/base/file.h"
 #include "server/base/log.h"
 #include "server/base/options.h"
 #include "server/exec/pool.h"
+#include "server/http/access.h"
 #include "server/http/feed.h"
-#include "server/http/guard.h"
 #include "server/http/server.h"
 #include "server/http/waiters.h"
 #include "server/store/store.h"
@@ -74,10 +76,11 @@ static enum status parts_open(const struct options *options, struct parts *parts
   struct service *service = &parts->service;
   int64_t recovered = 0;
   service->data = options->data;
-  service->loopback =
-      guard_host_is_loopback(options->listen.host) || strcmp(options->listen.host, "::1") == 0;
   service->started_ms = clock_monotonic_ms();
-  enum status status = data_lock(options->data, &parts->lock, error);
+  enum status status = access_create(options, &service->access, error);
+  if (status == STATUS_OK) {
+    status = data_lock(options->data, &parts->lock, error);
+  }
   if (status == STATUS_OK) {
     status = store_open(options->data, &service->store, error);
   }
@@ -128,6 +131,7 @@ static void parts_close(struct parts *parts) {
   waiters_destroy(parts->service.waiters);
   job_reader_destroy(parts->service.reader);
   store_close(parts->service.store);
+  access_destroy(parts->service.access);
   if (parts->lock >= 0) {
     close(parts->lock);
   }
@@ -183,6 +187,10 @@ static int serve(const struct options *options) {
 int main(int argc, char **argv) {
   struct options options;
   struct error error;
+  umask(0077); /* the data are of the daemon's user alone */
+  if (argc > 1 && strcmp(argv[1], "token") == 0) {
+    return token_command(argc - 1, argv + 1);
+  }
   if (options_read(argc, argv, &options, &error) != STATUS_OK) {
     fprintf(stderr, "pneulabd: %s\n", error.message);
     return 2;

@@ -25,6 +25,10 @@ export async function request(url, options = {}) {
     throw new Problem(0, { title: 'The daemon cannot be reached', detail: 'Is pneulabd running?' });
   }
   const body = await readBody(response);
+  if (response.status === 401) { // where tokens are needed: to the form, and back here afterwards
+    const here = window.location.pathname + window.location.search;
+    window.location.assign(`/sign-in?next=${encodeURIComponent(here)}`);
+  }
   if (!response.ok) {
     throw new Problem(response.status, body);
   }

@@ -2,6 +2,8 @@
 #ifndef PNEULAB_SERVER_CALLER_H
 #define PNEULAB_SERVER_CALLER_H
 
+#include <stdbool.h>
+
 /* Each role may do all that the ones before it may. */
 enum role {
   ROLE_NONE,   /* anybody who reaches the port */
@@ -17,5 +19,11 @@ struct caller {
   char name[64];
   enum role role;
 };
+
+/* "none", "read", "submit" or "admin". */
+const char *role_word(enum role role);
+
+/* The role that a token may have by its word; false when there is none. */
+bool role_parse(const char *word, enum role *role);
 
 #endif

@@ -16,6 +16,13 @@ static const struct option_row rows[] = {
     ROW(TEXT, 'd', "data", "DIR", data, 0, 0, "var", "database, attempts and results"),
     ROW(ADDRESS, 'l', "listen", "ADDR:PORT", listen, 0, 0, "127.0.0.1:8080",
         "where to listen; port 0 picks a free one"),
+    ROW(TEXT, 0, "tls-certificate", "FILE", tls_certificate, 0, 0, NULL,
+        "PEM chain; then HTTPS is spoken (reread on SIGHUP)"),
+    ROW(TEXT, 0, "tls-key", "FILE", tls_key, 0, 0, NULL, "PEM key that belongs to it"),
+    ROW(FLAG, 0, "behind-proxy", NULL, behind_proxy, 0, 0, NULL,
+        "a proxy is in front: believe its X-Forwarded headers"),
+    ROW(LIST, 0, "host", "NAME", hosts, 0, 0, NULL,
+        "name that requests may be for; repeat or use commas"),
     ROW(COUNT, 'w', "workers", "N", workers, 1, 256, NULL,
         "jobs at a time (default: number of cores)"),
     ROW(WORD, 0, "executor", "local", executor, 0, 0, "local", "how jobs are run"),
@@ -40,10 +47,15 @@ static const struct option_row rows[] = {
         "for running jobs after SIGTERM"),
     ROW(NUMBER, 0, "retry-delay", "S", retry_delay_s, 0, 3600, "1",
         "before an attempt is repeated"),
-    ROW(NUMBER, 0, "header-timeout", "S", header_timeout_s, 0.1, 3600, "20",
-        "for a request to arrive"),
+    ROW(NUMBER, 0, "header-timeout", "S", header_timeout_s, 0.1, 3600, "8",
+        "for the header of a request to arrive"),
+    ROW(NUMBER, 0, "body-timeout", "S", body_timeout_s, 0.1, 3600, "30", "for its body"),
+    ROW(NUMBER, 0, "request-rate", "HZ", request_rate_hz, 0, 1e6, NULL,
+        "requests a second of one token or address, 0 for any\n                           number "
+        "(default: 0 on loopback, else 100)"),
+    ROW(COUNT, 0, "connections", "N", connections, 1, 100000, "500", "open at the same time"),
     ROW(COUNT, 0, "connections-per-address", "N", connections_per_address, 1, 10000, "20",
-        "open at the same time"),
+        "of them from one address"),
     ROW(COUNT, 0, "subscribers", "N", subscribers, 0, 10000, "200",
         "clients that follow the events at the same time"),
     ROW(ACTION, 'h', "help", NULL, action, OPTIONS_HELP, 0, NULL, "print this text"),
@@ -87,7 +99,8 @@ enum status options_read(int argc, char **argv, struct options *options, struct 
   long cores = sysconf(_SC_NPROCESSORS_ONLN);
   int used = 0;
   bool stopped = false;
-  *options = (struct options){.workers = cores > 0 && cores <= 256 ? (unsigned)cores : 1};
+  *options = (struct options){.workers = cores > 0 && cores <= 256 ? (unsigned)cores : 1,
+                              .request_rate_hz = -1};
   options_find_solver(options);
   enum status status = option_preset(rows, ROW_COUNT, options, error);
   if (status == STATUS_OK) {

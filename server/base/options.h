@@ -21,13 +21,20 @@ struct options {
   unsigned workers;
   unsigned connections_per_address;
   unsigned subscribers; /* to the stream of events; their connections do not count as others do */
-  uint64_t memory_limit_bytes; /* of one worker; 0: none */
-  double drain_timeout_s;      /* how long running jobs may go on after SIGTERM */
-  double time_limit_s;         /* of a job that sets no timeout */
-  double timeout_margin_s;     /* what a worker may overrun its job's timeout */
-  double header_timeout_s;     /* for one request's header, then again for its body */
-  double retry_delay_s;        /* before a second attempt; twice as long before a third */
-  unsigned action;             /* enum options_action */
+  uint64_t memory_limit_bytes;    /* of one worker; 0: none */
+  double drain_timeout_s;         /* how long running jobs may go on after SIGTERM */
+  double time_limit_s;            /* of a job that sets no timeout */
+  double timeout_margin_s;        /* what a worker may overrun its job's timeout */
+  double header_timeout_s;        /* for one request's header */
+  double retry_delay_s;           /* before a second attempt; twice as long before a third */
+  char tls_certificate[PATH_MAX]; /* PEM, "" for no TLS */
+  char tls_key[PATH_MAX];         /* PEM */
+  char hosts[1000];               /* names that requests may be for, separated by commas */
+  bool behind_proxy;              /* X-Forwarded-For and X-Forwarded-Proto are believed */
+  double request_rate_hz;         /* of a token or an address; 0: any, -1: by the address */
+  double body_timeout_s;          /* for one request's body */
+  unsigned connections;           /* in all, beside those of subscribers */
+  unsigned action;                /* enum options_action */
 };
 
 enum options_action { OPTIONS_RUN, OPTIONS_HELP, OPTIONS_VERSION };

@@ -24,15 +24,16 @@ static void etag_write(uint64_t tag, char etag[ETAG_SIZE]) {
   snprintf(etag, ETAG_SIZE, "\"%016" PRIx64 "\"", tag);
 }
 
-static void etag_mark(struct reply *reply, const char *etag) {
+/* "private": a cache that serves several people has no business with jobs. */
+static void etag_mark(struct reply *reply, const char *etag, const char *control) {
   reply_header(reply, "ETag", "%s", etag);
-  reply_header(reply, "Cache-Control", "no-cache");
+  reply_header(reply, "Cache-Control", "%s", control);
 }
 
 void cache_mark(struct reply *reply, uint64_t tag) {
   char etag[ETAG_SIZE];
   etag_write(tag, etag);
-  etag_mark(reply, etag);
+  etag_mark(reply, etag, "private, no-cache");
 }
 
 /* Whether a list of tags, strong or weak, or the word for all, names this one. */
@@ -62,7 +63,7 @@ bool cache_fresh(const struct request *request, struct reply *reply, uint64_t ta
     return false;
   }
   reply->status = 304;
-  etag_mark(reply, etag);
+  etag_mark(reply, etag, "private, no-cache");
   return true;
 }
 
@@ -71,6 +72,6 @@ bool cache_fresh_text(const struct request *request, struct reply *reply, const 
   if (fresh) {
     reply->status = 304;
   }
-  etag_mark(reply, etag);
+  etag_mark(reply, etag, "no-cache");
   return fresh;
 }

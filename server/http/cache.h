@@ -21,7 +21,8 @@ void cache_mark(struct reply *reply, uint64_t tag);
 /* Whether the request's If-None-Match names the tag: then the reply is a complete 304. */
 bool cache_fresh(const struct request *request, struct reply *reply, uint64_t tag);
 
-/* The same for a tag made elsewhere, quoted; marks the reply in either case. */
+/* The same for a tag made elsewhere, quoted; marks the reply in either case. For files of the
+ * program itself, which any cache may keep. */
 bool cache_fresh_text(const struct request *request, struct reply *reply, const char *etag);
 
 #endif

@@ -5,8 +5,10 @@
 #include <string.h>
 #include <strings.h>
 
+#include "server/http/access.h"
+
 struct header_scan {
-  unsigned hosts, lengths, codings;
+  unsigned hosts, lengths, codings, credentials;
   bool bad_name, bad_value;
 };
 
@@ -23,6 +25,7 @@ static enum MHD_Result header_scan_one(void *context, enum MHD_ValueKind kind, c
   scan->hosts += strcasecmp(name, "Host") == 0;
   scan->lengths += strcasecmp(name, "Content-Length") == 0;
   scan->codings += strcasecmp(name, "Transfer-Encoding") == 0;
+  scan->credentials += strcasecmp(name, "Authorization") == 0;
   scan->bad_name = scan->bad_name || strlen(name) != name_size || !name_is_token(name);
   scan->bad_value = scan->bad_value || (value && strlen(value) != value_size);
   for (const char *c = value ? value : ""; *c; c++) {
@@ -76,6 +79,9 @@ static bool guard_framing(const struct header_scan *scan, const char *coding, st
                   "A header name is not a token (a space before the colon?), or a value has a "
                   "control character.");
   }
+  if (scan->credentials > 1) {
+    return refuse(reply, 400, "ambiguous_credentials", "Authorization may be given once.");
+  }
   if (scan->lengths > 1 || scan->codings > 1 || (scan->lengths > 0 && scan->codings > 0)) {
     return refuse(reply, 400, "ambiguous_length",
                   "Content-Length and Transfer-Encoding: exactly one of them, once.");
@@ -87,6 +93,28 @@ static bool guard_framing(const struct header_scan *scan, const char *coding, st
   return true;
 }
 
+/* Whether a name of --host is that of the authority, apart from its port. */
+static bool host_is_named(const char *hosts, const char *authority) {
+  size_t length = authority[0] == '[' ? strcspn(authority, "]") + 1 : strcspn(authority, ":");
+  while (*hosts) {
+    size_t name = strcspn(hosts, ",");
+    if (name == length && strncasecmp(hosts, authority, name) == 0) {
+      return authority[length] == '\0' ||
+             (authority[length] == ':' &&
+              authority[length + 1 + strspn(authority + length + 1, "0123456789")] == '\0');
+    }
+    hosts += name + (hosts[name] == ',');
+  }
+  return false;
+}
+
+/* A name that was rebound to our address is refused where we know our names. Without --host a
+ * server that others reach does not know them; there every request needs a token. */
+static bool host_is_ours(const struct access *access, const char *authority) {
+  return host_is_named(access->hosts, authority) ||
+         (access->loopback ? guard_host_is_loopback(authority) : access->hosts[0] == '\0');
+}
+
 static bool guard_host(const struct request *request, const struct header_scan *scan,
                        const char *version, const char *host, struct reply *reply) {
   if (scan->hosts > 1 || (scan->hosts == 0 && strcmp(version, "HTTP/1.0") != 0)) {
@@ -96,27 +124,40 @@ static bool guard_host(const struct request *request, const struct header_scan *
   if (authority && host && strcasecmp(authority, host) != 0) {
     return refuse(reply, 421, "wrong_host", "The request target names another host than Host.");
   }
-  if (request->service->loopback && host && !guard_host_is_loopback(host)) {
+  if (host && !host_is_ours(request->service->access, host)) {
     return refuse(reply, 421, "wrong_host",
-                  "This server listens on a loopback address and answers only requests for "
-                  "localhost, 127.0.0.1 or [::1].");
+                  "This server answers requests for the names given with --host and, on a loopback "
+                  "address, for localhost, 127.0.0.1 or [::1].");
   }
   return true;
 }
 
-/* A browser tells where a request comes from; other clients send neither header. */
+/* Whether the origin that a browser names is this server. A proxy may speak https for us. */
+static bool origin_is_ours(const struct request *request, const char *origin, const char *host) {
+  const char *rest = strncasecmp(origin, "https://", 8) == 0  ? origin + 8
+                     : strncasecmp(origin, "http://", 7) == 0 ? origin + 7
+                                                              : NULL;
+  bool secure = rest == origin + 8;
+  return host && rest && strcasecmp(rest, host) == 0 && (secure || !access_is_secure(request));
+}
+
+/* A browser tells where a request comes from; other clients send neither header. Pages of other
+ * origins may lead here, but neither change anything nor load something of ours into themselves. */
 static bool guard_origin(const struct request *request, const char *host, struct reply *reply) {
   const char *origin = request_header(request, "Origin");
   const char *site = request_header(request, "Sec-Fetch-Site");
-  bool foreign = site && strcasecmp(site, "same-origin") != 0 && strcasecmp(site, "none") != 0;
-  if (origin) {
-    const char *rest = strstr(origin, "://"); /* a proxy may speak https for us */
-    foreign = foreign || !host || !rest || strncasecmp(origin, "http", 4) != 0 ||
-              strcasecmp(rest + 3, host) != 0;
-  }
-  if (foreign && request->method != HTTP_GET) {
+  const char *mode = request_header(request, "Sec-Fetch-Mode");
+  bool foreign = (site && strcasecmp(site, "same-origin") != 0 && strcasecmp(site, "none") != 0) ||
+                 (origin && !origin_is_ours(request, origin, host));
+  bool navigates = request->method == HTTP_GET && mode && strcasecmp(mode, "navigate") == 0;
+  if (foreign && !navigates) {
     return refuse(reply, 403, "cross_origin",
-                  "Requests that change something are accepted from this server's own pages only.");
+                  "A browser's requests are accepted from this server's own pages only; pages of "
+                  "other origins may link here.");
+  }
+  if (request->method != HTTP_GET && !origin && !site && request_header(request, "Cookie")) {
+    return refuse(reply, 403, "cross_origin",
+                  "A request that changes something and carries a cookie must name its Origin.");
   }
   return true;
 }

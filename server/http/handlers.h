@@ -34,6 +34,9 @@ handler database_show;
 /* health.c */
 handler health_live, health_ready, health_metrics;
 
+/* session.c: signing in and out with a browser */
+handler session_open, session_close, session_caller;
+
 /* pages.c */
 handler page_job, page_show;
 /* Whether the request's path names a file of the table static_files, or the start page. */

@@ -9,7 +9,6 @@
 
 enum {
   THREADS = 4,
-  CONNECTIONS_MAX = 500, /* beside those that follow the events */
   DESCRIPTORS_OWN = 300, /* for the database, workers, files that are being sent */
   IDLE_TIMEOUT_S = 15
 };
@@ -47,12 +46,12 @@ enum status listen_start(const struct options *options, const struct listen_call
   unsigned flags =
       MHD_USE_EPOLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME | (is_six ? MHD_USE_IPv6 : 0U);
   void *context = calls->context;
-  descriptors_raise((rlim_t)CONNECTIONS_MAX + options->subscribers + DESCRIPTORS_OWN);
+  descriptors_raise((rlim_t)options->connections + options->subscribers + DESCRIPTORS_OWN);
   *daemon = MHD_start_daemon(
       flags, (uint16_t)listen->port, NULL, NULL, calls->handle, context, MHD_OPTION_SOCK_ADDR,
       address, MHD_OPTION_THREAD_POOL_SIZE, (unsigned)THREADS, MHD_OPTION_PER_IP_CONNECTION_LIMIT,
       options->connections_per_address, MHD_OPTION_CONNECTION_LIMIT,
-      CONNECTIONS_MAX + options->subscribers, MHD_OPTION_CONNECTION_TIMEOUT,
+      options->connections + options->subscribers, MHD_OPTION_CONNECTION_TIMEOUT,
       (unsigned)IDLE_TIMEOUT_S, MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_URI_LOG_CALLBACK,
       calls->note_target, context, MHD_OPTION_UNESCAPE_CALLBACK, keep_escapes, NULL,
       MHD_OPTION_NOTIFY_COMPLETED, calls->completed, context, MHD_OPTION_NOTIFY_CONNECTION,

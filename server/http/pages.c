@@ -38,6 +38,7 @@ static const struct static_file *page_of(const struct request *request) {
 
 static void page_reply(const struct request *request, struct reply *reply,
                        const struct static_file *file) {
+  reply->content_type = file->content_type; /* the policy that goes with it, for a 304 too */
   if (!cache_fresh_text(request, reply, file->etag)) {
     reply_static(reply, file->content_type, file->data, file->size);
   }

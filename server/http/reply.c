@@ -127,13 +127,15 @@ static const char *status_title(unsigned status) {
     unsigned status;
     const char *title;
   } titles[] = {{400, "the request is malformed"},
-                {403, "the request is not allowed from there"},
+                {401, "the request needs a valid token"},
+                {403, "the request is not allowed"},
                 {404, "the named thing does not exist"},
                 {405, "the resource does not offer this method"},
                 {409, "the request does not fit the present state"},
                 {413, "the request body is too large"},
                 {421, "the request is meant for another server"},
                 {422, "the content breaks a rule"},
+                {429, "the client sends too many requests"},
                 {501, "the request needs something that is not offered"},
                 {503, "the service cannot do this now"}};
   for (size_t i = 0; i < sizeof titles / sizeof *titles; i++) {

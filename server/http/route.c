@@ -42,6 +42,10 @@ static const struct route {
     {HTTP_GET, ROLE_NONE, "healthz", health_live, ""},
     {HTTP_GET, ROLE_NONE, "readyz", health_ready, ""},
     {HTTP_GET, ROLE_READ, "metrics", health_metrics, ""},
+    {HTTP_GET, ROLE_READ, "api/v1/caller", session_caller, ""},
+    {HTTP_POST, ROLE_NONE, "sign-in", session_open, "next"},
+    {HTTP_POST, ROLE_NONE, "sign-out", session_close, ""},
+    {HTTP_GET, ROLE_NONE, "sign-in", page_show, "next"},
     {HTTP_GET, ROLE_NONE, "jobs/{id}", page_job, NULL},
 };
 

@@ -8,9 +8,11 @@
 #include <unistd.h>
 
 #include "server/base/clock.h"
+#include "server/http/access.h"
 #include "server/http/connections.h"
 #include "server/http/feed.h"
 #include "server/http/guard.h"
+#include "server/http/headers.h"
 #include "server/http/listen.h"
 #include "server/http/route.h"
 #include "server/http/waiters.h"
@@ -92,25 +94,7 @@ static enum MHD_Result reply_send(struct exchange *exchange, struct reply *reply
     reply_clear(reply);
     return MHD_NO;
   }
-  bool cached = false;
-  for (size_t i = 0; i < reply->header_count; i++) {
-    MHD_add_response_header(response, reply->headers[i].name, reply->headers[i].value);
-    cached = cached || strcmp(reply->headers[i].name, "Cache-Control") == 0;
-  }
-  if (reply->content_type) {
-    MHD_add_response_header(response, "Content-Type", reply->content_type);
-  }
-  if (!cached) {
-    MHD_add_response_header(response, "Cache-Control", "no-store");
-  }
-  MHD_add_response_header(response, "X-Content-Type-Options", "nosniff");
-  MHD_add_response_header(response, "Referrer-Policy", "no-referrer");
-  MHD_add_response_header(response, "Content-Security-Policy",
-                          "default-src 'self'; frame-ancestors 'none'; base-uri 'none'; "
-                          "form-action 'self'");
-  if (reply->close) {
-    MHD_add_response_header(response, "Connection", "close");
-  }
+  headers_add(response, reply);
   enum MHD_Result result =
       MHD_queue_response(exchange->request.connection, reply->status, response);
   MHD_destroy_response(response);
@@ -153,10 +137,13 @@ static void exchange_open(struct exchange *exchange, const char *method, const c
     reply->close = true;
     return;
   }
-  if (!guard_check(request, version, reply)) {
+  if (!guard_check(request, version, reply) || !access_identify(request, reply)) {
     return;
   }
   exchange->handle = route_find(request, reply);
+  if (exchange->handle && !access_allows(request, reply)) {
+    exchange->handle = NULL;
+  }
   const char *length = request_header(request, "Content-Length");
   if (exchange->handle && length && strtoull(length, NULL, 10) > HTTP_BODY_MAX) {
     exchange->handle = NULL;
@@ -258,7 +245,6 @@ static enum MHD_Result server_handle(void *context, struct MHD_Connection *conne
     exchange->request.connection = connection;
     exchange->request.service = server->service;
     exchange->connections = server->connections;
-    exchange->request.caller.role = ROLE_ADMIN; /* no tokens are configured */
     exchange_open(exchange, method, version);
     connections_phase(server->connections, exchange_connection(exchange), CONNECTION_BODY);
     return exchange_refuse_now(exchange) ? reply_send(exchange, &exchange->reply) : MHD_YES;
@@ -331,6 +317,7 @@ static void *server_tick(void *context) {
     pthread_mutex_unlock(&server->mutex);
     waiters_expire(server->service->waiters, false);
     connections_expire(server->connections);
+    tokens_refresh(server->service->access->tokens);
     pthread_mutex_lock(&server->mutex);
   }
   pthread_mutex_unlock(&server->mutex);

@@ -15,11 +15,12 @@
 #include "server/store/store.h"
 
 struct MHD_Connection;
+struct access;
 struct feed;
 struct job_reader;
 struct waiters;
 
-enum { HTTP_BODY_MAX = 1 << 20, HTTP_WAIT_MAX_S = 60 };
+enum { HTTP_BODY_MAX = 1 << 20, HTTP_WAIT_MAX_S = 60, CLIENT_SIZE = 46 };
 
 /* Shared by all requests; everything pointed to outlives the server. */
 struct service {
@@ -27,9 +28,9 @@ struct service {
   struct pool *pool;
   struct waiters *waiters;
   struct feed *feed;         /* the stream of events */
+  struct access *access;     /* who may come in */
   struct job_reader *reader; /* checks job documents */
   const char *data;          /* data directory */
-  bool loopback;             /* listening on a loopback address: Host must be one too */
   int64_t started_ms;        /* on the monotonic clock */
   atomic_bool draining;      /* no new jobs */
   atomic_ullong requests[6]; /* answered, by first digit of the status */
@@ -44,7 +45,9 @@ enum http_method {
 struct request {
   struct service *service;
   struct MHD_Connection *connection;
+  char client[CLIENT_SIZE]; /* numeric address of the client */
   struct caller caller;
+  bool bad_token;          /* one was sent, but it is nobody's */
   enum role least_role;    /* that the route asks for */
   enum http_method method; /* HEAD counts as GET: the body is left out while sending */
   char *target;            /* as received, then cut into pieces by url_parse */

@@ -12,7 +12,8 @@ for path in "/api/v1/jobs/$id/document" "/api/v1/jobs/$id/result" "/api/v1/jobs/
   /openapi.yaml / /static/style.css; do
   fetch GET "$path"
   check_match "GET $path has a tag" '^"[^"]+"$' "$(header ETag)"
-  check "GET $path is asked for anew" no-cache "$(header Cache-Control)"
+  case $path in / | /static/*) control=no-cache ;; *) control="private, no-cache" ;; esac
+  check "GET $path is asked for anew" "$control" "$(header Cache-Control)"
   etag=$(header ETag)
   fetch GET "$path" -H "If-None-Match: $etag"
   check "GET $path as known" "304 0 $etag" "$CODE ${#BODY} $(header ETag)"

@@ -83,7 +83,7 @@ check "result schema" true "$(field 'has("$schema")')"
 for path in /openapi.yaml /readyz /metrics / /jobs/1; do
   fetch GET $path
   check "GET $path" 200 "$CODE"
-  check_match "policy of $path" "default-src 'self'" "$(header Content-Security-Policy)"
+  check_match "policy of $path" "default-src 'none'.*frame-ancestors 'none'" "$(header Content-Security-Policy)"
 done
 fetch GET /metrics
 check "succeeded jobs in the Prometheus text" "$(sql "select count(*) from job where state = 'succeeded'")" \
