@@ -29,7 +29,7 @@ static enum status attempt_check(sqlite3 *db, int64_t job_id, int64_t attempt,
   } else if (status == STATUS_OK) {
     *failures = sqlite3_column_int64(statement, 1);
   }
-  sqlite3_finalize(statement);
+  sql_done(statement);
   return status;
 }
 
@@ -55,7 +55,7 @@ static enum status claim_find(sqlite3 *db, int64_t now, struct claim *claim, str
       status = error_set(error, STATUS_NO_MEMORY, NULL, "No memory for a job document.");
     }
   }
-  sqlite3_finalize(statement);
+  sql_done(statement);
   return status;
 }
 

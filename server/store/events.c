@@ -34,7 +34,7 @@ enum status store_event_last(struct store *store, int64_t *id, struct error *err
     status = sql_step(statement, &row, error);
     *id = row ? sqlite3_column_int64(statement, 0) : 0;
   }
-  sqlite3_finalize(statement);
+  sql_done(statement);
   store_read_end(store, db);
   return status;
 }
@@ -68,7 +68,7 @@ enum status store_events(struct store *store, int64_t after, int limit,
     }
     ++*count;
   }
-  sqlite3_finalize(statement);
+  sql_done(statement);
   store_read_end(store, db);
   return status;
 }
@@ -90,7 +90,7 @@ enum status store_labels(struct store *store, int64_t id, json_t **labels, struc
   if (status == STATUS_OK && row) {
     *labels = json_loads(sql_text(statement, 0), 0, NULL);
   }
-  sqlite3_finalize(statement);
+  sql_done(statement);
   store_read_end(store, db);
   return status;
 }

@@ -145,7 +145,7 @@ enum status flatten_store(sqlite3 *db, int64_t job_id, const json_t *root,
                   "");
   if (status == STATUS_OK) {
     status = flatten_value(&to, root);
-    sqlite3_finalize(to.insert);
+    sql_done(to.insert);
   }
   return status;
 }

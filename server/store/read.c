@@ -30,7 +30,7 @@ static enum status rows_read(sqlite3 *db, const char *sql, int64_t id, json_t *i
     }
     take(into, statement);
   }
-  sqlite3_finalize(statement);
+  sql_done(statement);
   return status;
 }
 
@@ -145,7 +145,7 @@ enum status store_job(struct store *store, int64_t id, struct job_record *record
   if (status == STATUS_OK) {
     status = row ? store_record_read(db, statement, record, error) : store_no_job(id, error);
   }
-  sqlite3_finalize(statement);
+  sql_done(statement);
   store_read_end(store, db);
   return status;
 }
@@ -180,7 +180,7 @@ static enum status texts_read(struct store *store, const char *sql, int64_t id, 
       }
     }
   }
-  sqlite3_finalize(statement);
+  sql_done(statement);
   store_read_end(store, db);
   return status;
 }
@@ -212,7 +212,7 @@ enum status store_artifact(struct store *store, int64_t id, const char *name, st
     status = error_set(error, STATUS_NOT_FOUND, NULL, "Job %lld has no artifact %.100s.",
                        (long long)id, name);
   }
-  sqlite3_finalize(statement);
+  sql_done(statement);
   store_read_end(store, db);
   return status;
 }

@@ -35,10 +35,20 @@ static int sql_bind(sqlite3_stmt *statement, const char *types, va_list argument
   return code;
 }
 
+/* A statement of this text that sql_done has kept, NULL when there is none. */
+static sqlite3_stmt *statement_kept(sqlite3 *db, const char *text) {
+  sqlite3_stmt *at = NULL;
+  while ((at = sqlite3_next_stmt(db, at)) &&
+         (sqlite3_stmt_busy(at) || strcmp(sqlite3_sql(at), text) != 0)) {
+  }
+  return at;
+}
+
 static enum status sql_prepare_list(sqlite3 *db, sqlite3_stmt **statement, struct error *error,
                                     const char *text, const char *types, va_list arguments) {
-  *statement = NULL;
-  if (sqlite3_prepare_v2(db, text, -1, statement, NULL) != SQLITE_OK) {
+  *statement = statement_kept(db, text);
+  if (!*statement &&
+      sqlite3_prepare_v3(db, text, -1, SQLITE_PREPARE_PERSISTENT, statement, NULL) != SQLITE_OK) {
     return sql_fail(db, error);
   }
   if (sql_bind(*statement, types, arguments) != SQLITE_OK) {
@@ -68,9 +78,24 @@ enum status sql_run(sqlite3 *db, struct error *error, const char *text, const ch
   if (status == STATUS_OK) {
     int row;
     status = sql_step(statement, &row, error);
-    sqlite3_finalize(statement);
+    sql_done(statement);
   }
   return status;
+}
+
+void sql_done(sqlite3_stmt *statement) {
+  if (statement) {
+    sqlite3_reset(statement);
+    sqlite3_clear_bindings(statement);
+  }
+}
+
+void sql_close(sqlite3 *db) {
+  sqlite3_stmt *statement;
+  while (db && (statement = sqlite3_next_stmt(db, NULL))) {
+    sqlite3_finalize(statement);
+  }
+  sqlite3_close(db);
 }
 
 enum status sql_step(sqlite3_stmt *statement, int *row, struct error *error) {

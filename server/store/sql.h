@@ -13,9 +13,17 @@ enum status sql_fail(sqlite3 *db, struct error *error);
 
 /* Prepares a statement and binds its parameters in order. types: one letter a parameter,
  * i (int64_t), d (double), t (const char *, NULL binds SQL NULL), n (nothing: SQL NULL).
- * Texts must live until the statement is finalized. On success the caller owns *statement. */
+ * Texts must live until the statement is done. On success the caller owns *statement and ends with
+ * sql_done, or with sqlite3_finalize when its text was made up and will hardly come again. A
+ * connection has at most one statement of a text in use at a time. */
 enum status sql_prepare(sqlite3 *db, sqlite3_stmt **statement, struct error *error,
                         const char *text, const char *types, ...);
+
+/* Ends the use of a statement; it is kept for the next one of the same text. NULL is fine. */
+void sql_done(sqlite3_stmt *statement);
+
+/* Closes a connection and the statements that it keeps. NULL is fine. */
+void sql_close(sqlite3 *db);
 
 /* Prepares, binds as above and runs a statement that returns no rows. */
 enum status sql_run(sqlite3 *db, struct error *error, const char *text, const char *types, ...);

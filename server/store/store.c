@@ -67,9 +67,9 @@ void store_close(struct store *store) {
     return;
   }
   for (int i = 0; i < STORE_READERS; i++) {
-    sqlite3_close(store->readers[i]);
+    sql_close(store->readers[i]);
   }
-  sqlite3_close(store->writer);
+  sql_close(store->writer);
   units_destroy(store->units);
   pthread_cond_destroy(&store->reader_free);
   pthread_mutex_destroy(&store->reader_mutex);
@@ -106,8 +106,7 @@ sqlite3 *store_read_begin(struct store *store, struct error *error) {
   store->reader_busy[found] = true;
   sqlite3 *reader = store->readers[found];
   pthread_mutex_unlock(&store->reader_mutex);
-  if (sqlite3_exec(reader, "BEGIN", NULL, NULL, NULL) != SQLITE_OK) {
-    sql_fail(reader, error);
+  if (sql_run(reader, error, "BEGIN", "") != STATUS_OK) {
     reader_release(store, reader);
     return NULL;
   }
@@ -115,26 +114,25 @@ sqlite3 *store_read_begin(struct store *store, struct error *error) {
 }
 
 void store_read_end(struct store *store, sqlite3 *reader) {
-  sqlite3_exec(reader, "ROLLBACK", NULL, NULL, NULL);
+  sql_run(reader, NULL, "ROLLBACK", "");
   reader_release(store, reader);
 }
 
 enum status store_write_begin(struct store *store, struct error *error) {
   pthread_mutex_lock(&store->writer_mutex);
-  if (sqlite3_exec(store->writer, "BEGIN IMMEDIATE", NULL, NULL, NULL) != SQLITE_OK) {
-    enum status status = sql_fail(store->writer, error);
+  enum status status = sql_run(store->writer, error, "BEGIN IMMEDIATE", "");
+  if (status != STATUS_OK) {
     pthread_mutex_unlock(&store->writer_mutex);
-    return status;
   }
-  return STATUS_OK;
+  return status;
 }
 
 enum status store_write_end(struct store *store, enum status status, struct error *error) {
-  if (status == STATUS_OK && sqlite3_exec(store->writer, "COMMIT", NULL, NULL, NULL) != SQLITE_OK) {
-    status = sql_fail(store->writer, error);
+  if (status == STATUS_OK) {
+    status = sql_run(store->writer, error, "COMMIT", "");
   }
   if (status != STATUS_OK) {
-    sqlite3_exec(store->writer, "ROLLBACK", NULL, NULL, NULL);
+    sql_run(store->writer, NULL, "ROLLBACK", "");
   }
   void (*committed)(void *) =
       store->event_written && status == STATUS_OK ? store->event_committed : NULL;
@@ -163,6 +161,6 @@ enum status store_state_of(sqlite3 *db, int64_t id, enum job_state *state, struc
   if (status == STATUS_OK && (!row || !job_state_parse(sql_text(statement, 0), state))) {
     status = store_no_job(id, error);
   }
-  sqlite3_finalize(statement);
+  sql_done(statement);
   return status;
 }

@@ -35,7 +35,7 @@ static enum status submission_find(sqlite3 *db, const struct submission *submiss
                          (long long)*id);
     }
   }
-  sqlite3_finalize(statement);
+  sql_done(statement);
   return status;
 }
 
