@@ -151,7 +151,8 @@ static void drain(struct parts *parts, const sigset_t *signals, double timeout_s
     if (clock_monotonic_ms() >= until) {
       pool_stop(pool, false);
     }
-    if (sigtimedwait(signals, NULL, &poll) > 0) {
+    int received = sigtimedwait(signals, NULL, &poll);
+    if (received > 0 && received != SIGHUP) {
       log_line("shutting down at once");
       pool_stop(pool, true);
     }
@@ -162,10 +163,11 @@ static int serve(const struct options *options) {
   struct parts parts = {.lock = -1};
   struct error error;
   sigset_t signals;
-  int received;
+  int received = 0;
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
   sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGHUP);
   sigprocmask(SIG_BLOCK, &signals, NULL); /* in all threads: they are taken here */
   signal(SIGPIPE, SIG_IGN);
   setenv("OPENBLAS_NUM_THREADS", "1", 1); /* for the workers: one core each */
@@ -174,10 +176,12 @@ static int serve(const struct options *options) {
     fprintf(stderr, "pneulabd: %s\n", error.message);
   } else {
     bool six = strchr(options->listen.host, ':') != NULL;
-    printf("listening on http://%s%s%s:%u\n", six ? "[" : "", options->listen.host, six ? "]" : "",
-           server_port(parts.server));
+    printf("listening on http%s://%s%s%s:%u\n", options->tls_certificate[0] ? "s" : "",
+           six ? "[" : "", options->listen.host, six ? "]" : "", server_port(parts.server));
     fflush(stdout);
-    sigwait(&signals, &received);
+    while (sigwait(&signals, &received) == 0 && received == SIGHUP) {
+      access_reload(parts.service.access);
+    }
     drain(&parts, &signals, options->drain_timeout_s);
   }
   parts_close(&parts);

@@ -10,6 +10,7 @@
 
 #include "server/base/log.h"
 #include "server/http/guard.h"
+#include "server/http/tls.h"
 
 enum { PUBLIC_RATE_HZ = 100, BURST_S = 10, FAILURES_BURST = 10 };
 
@@ -51,7 +52,7 @@ enum status access_create(const struct options *options, struct access **access,
   }
   made->loopback = loopback;
   made->behind_proxy = options->behind_proxy;
-  made->tls = options->tls_certificate[0] != '\0';
+  made->requests_open = options->behind_proxy ? options->connections_per_address : 0;
   made->hosts = options->hosts;
   double rate_hz = options->request_rate_hz;
   if (rate_hz < 0) {
@@ -63,6 +64,9 @@ enum status access_create(const struct options *options, struct access **access,
   }
   if (status == STATUS_OK) {
     status = limiter_create(failure_rate_hz, FAILURES_BURST, &made->failures, error);
+  }
+  if (status == STATUS_OK && options->tls_certificate[0]) {
+    status = tls_create(options->tls_certificate, options->tls_key, &made->tls, error);
   }
   if (status != STATUS_OK) {
     access_destroy(made);
@@ -77,7 +81,20 @@ void access_destroy(struct access *access) {
     tokens_destroy(access->tokens);
     limiter_destroy(access->requests);
     limiter_destroy(access->failures);
+    tls_destroy(access->tls);
     free(access);
+  }
+}
+
+void access_reload(struct access *access) {
+  struct error error;
+  if (!access->tls) {
+    return;
+  }
+  if (tls_reload(access->tls, &error) == STATUS_OK) {
+    log_line("the certificate was read again");
+  } else {
+    log_line("the certificate stays as it was: %s", error.message);
   }
 }
 
@@ -137,11 +154,10 @@ static const char *request_secret(const struct request *request) {
   return MHD_lookup_connection_value(request->connection, MHD_COOKIE_KIND, access_cookie(request));
 }
 
-bool access_identify(struct request *request, struct reply *reply) {
-  struct access *access = request->service->access;
-  const char *forwarded = access->behind_proxy ? forwarded_address(request) : NULL;
-  char party[CLIENT_SIZE];
-  double wait_s;
+/* Fills request->client and request->party. */
+static void identify_address(struct request *request) {
+  const char *forwarded =
+      request->service->access->behind_proxy ? forwarded_address(request) : NULL;
   unsigned char raw[16];
   if (forwarded && strlen(forwarded) < CLIENT_SIZE &&
       (inet_pton(AF_INET, forwarded, raw) == 1 || inet_pton(AF_INET6, forwarded, raw) == 1)) {
@@ -149,20 +165,37 @@ bool access_identify(struct request *request, struct reply *reply) {
   } else {
     peer_address(request, request->client);
   }
-  address_party(request->client, party);
+  address_party(request->client, request->party);
+}
+
+static void reply_too_many(struct reply *reply, const char *what, const char *party,
+                           double wait_s) {
+  reply_problem(reply, 429, "too_many_requests", "%s (%s). Try again in %.0f s.", what, party,
+                ceil(wait_s));
+  reply_header(reply, "Retry-After", "%.0f", ceil(wait_s));
+}
+
+bool access_identify(struct request *request, struct connections *connections,
+                     struct connection *connection, struct reply *reply) {
+  struct access *access = request->service->access;
+  const char *name = request->caller.name;
+  double wait_s;
+  identify_address(request);
   if (!tokens_required(access->tokens)) {
     request->caller.role = ROLE_ADMIN;
   } else {
     const char *secret = request_secret(request);
     request->bad_token = secret && !tokens_check(access->tokens, secret, &request->caller);
   }
-  const char *name = request->caller.name;
-  if (!limiter_take(access->requests, name[0] ? name : party, &wait_s)) {
-    reply_problem(reply, 429, "too_many_requests",
-                  "%s asks too often; try again in %.0f s. The daemon's --request-rate says how "
-                  "often is allowed.",
-                  name[0] ? name : party, ceil(wait_s));
-    reply_header(reply, "Retry-After", "%.0f", ceil(wait_s));
+  if (!limiter_take(access->requests, name[0] ? name : request->party, &wait_s)) {
+    reply_too_many(reply, "There are more requests than --request-rate allows",
+                   name[0] ? name : request->party, wait_s);
+    return false;
+  }
+  if (access->requests_open > 0 &&
+      connections_party(connections, connection, request->party) > access->requests_open) {
+    reply_too_many(reply, "There are more requests at a time than --connections-per-address allows",
+                   request->party, 1);
     return false;
   }
   return true;
@@ -171,16 +204,12 @@ bool access_identify(struct request *request, struct reply *reply) {
 /* ---- what they may do -------------------------------------------------------------------- */
 
 bool access_note_failure(struct request *request, struct reply *reply) {
-  char party[CLIENT_SIZE];
   double wait_s;
-  address_party(request->client, party);
-  if (limiter_take(request->service->access->failures, party, &wait_s)) {
+  if (limiter_take(request->service->access->failures, request->party, &wait_s)) {
     log_line("a wrong token from %s", request->client);
     return true;
   }
-  reply_problem(reply, 429, "too_many_requests",
-                "Too many wrong tokens came from %s; try again in %.0f s.", party, ceil(wait_s));
-  reply_header(reply, "Retry-After", "%.0f", ceil(wait_s));
+  reply_too_many(reply, "Too many wrong tokens were sent", request->party, wait_s);
   return false;
 }
 

@@ -6,12 +6,14 @@
 #include "server/auth/limiter.h"
 #include "server/auth/tokens.h"
 #include "server/base/options.h"
+#include "server/http/connections.h"
 #include "server/http/service.h"
 
 struct access {
   bool loopback;            /* listening on a loopback address */
   bool behind_proxy;        /* its X-Forwarded-For and X-Forwarded-Proto are believed */
-  bool tls;                 /* the daemon itself speaks TLS */
+  unsigned requests_open;   /* of one party at a time behind a proxy, else 0: any number */
+  struct tls *tls;          /* NULL: the daemon itself does not speak TLS */
   const char *hosts;        /* names of --host, separated by commas; "" for none */
   struct tokens *tokens;    /* needed in each request, or by nobody */
   struct limiter *requests; /* of a token, else an address */
@@ -24,9 +26,14 @@ enum status access_create(const struct options *options, struct access **access,
                           struct error *error);
 void access_destroy(struct access *access);
 
-/* Finds out who sends the request: fills request->client and request->caller, with ROLE_NONE for
- * somebody unknown. When they ask too often: replies 429 and returns false. */
-bool access_identify(struct request *request, struct reply *reply);
+/* Reads the certificate again and logs what came of it. */
+void access_reload(struct access *access);
+
+/* Finds out who sends the request: fills request->client, party and caller, with ROLE_NONE for
+ * somebody unknown. When they ask too often, or for too much at a time: replies 429 and returns
+ * false. `connection` is that of the request among `connections`. */
+bool access_identify(struct request *request, struct connections *connections,
+                     struct connection *connection, struct reply *reply);
 
 /* Whether the caller has the role that the route asks for; otherwise replies 401, 403 or 429 and
  * returns false. */

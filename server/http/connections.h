@@ -9,6 +9,7 @@
 
 struct connections;
 struct connection;
+struct tls;
 
 enum connection_phase {
   CONNECTION_HEADER, /* idle, or a header is arriving */
@@ -17,9 +18,14 @@ enum connection_phase {
   CONNECTION_STREAM /* an answer without an end */
 };
 
-/* timeout_ms: for the header, and again for the body. The caller owns *connections. */
-enum status connections_create(int64_t timeout_ms, struct connections **connections,
-                               struct error *error);
+/* How long a client may take to send a header and a body, however busily it trickles. */
+struct connection_times {
+  int64_t header_ms, body_ms;
+};
+
+/* tls: of all connections, NULL for plain HTTP; outlives *connections, which is the caller's. */
+enum status connections_create(const struct connection_times *times, struct tls *tls,
+                               struct connections **connections, struct error *error);
 void connections_destroy(struct connections *connections);
 
 /* Notes a new connection in phase header; NULL without memory. The socket stays the caller's. */
@@ -29,8 +35,14 @@ void connections_remove(struct connections *connections, struct connection *conn
 /* Enters a phase; its time starts now. A NULL connection is fine. */
 void connections_phase(struct connections *connections, struct connection *connection,
                        enum connection_phase phase);
-/* Shuts down the sockets whose time is over; a request that did not arrive gets a 408. */
+/* Shuts down the sockets whose time is over; a request that did not arrive gets a 408. An answer
+ * may take any time as long as the client takes 1 kB/s of it. */
 void connections_expire(struct connections *connections);
+/* Notes whose request a connection carries, and tells how many open ones are theirs, with this. */
+unsigned connections_party(struct connections *connections, struct connection *connection,
+                           const char *party);
+/* What a connection was made with. NULL is fine. */
+struct tls *connection_tls(const struct connection *connection);
 /* Number of connections with a request that is not answered yet. */
 unsigned connections_busy(struct connections *connections);
 

@@ -137,7 +137,8 @@ static void exchange_open(struct exchange *exchange, const char *method, const c
     reply->close = true;
     return;
   }
-  if (!guard_check(request, version, reply) || !access_identify(request, reply)) {
+  if (!guard_check(request, version, reply) ||
+      !access_identify(request, exchange->connections, exchange_connection(exchange), reply)) {
     return;
   }
   exchange->handle = route_find(request, reply);
@@ -337,8 +338,9 @@ enum status server_create(const struct options *options, struct service *service
   pthread_mutex_init(&made->mutex, NULL);
   pthread_cond_init(&made->stop, &monotonic);
   pthread_condattr_destroy(&monotonic);
-  enum status status =
-      connections_create((int64_t)(1000 * options->header_timeout_s), &made->connections, error);
+  struct connection_times times = {.header_ms = (int64_t)(1000 * options->header_timeout_s),
+                                   .body_ms = (int64_t)(1000 * options->body_timeout_s)};
+  enum status status = connections_create(&times, service->access->tls, &made->connections, error);
   if (status == STATUS_OK) {
     struct listen_calls calls = {.context = made,
                                  .handle = server_handle,

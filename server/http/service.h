@@ -46,6 +46,7 @@ struct request {
   struct service *service;
   struct MHD_Connection *connection;
   char client[CLIENT_SIZE]; /* numeric address of the client */
+  char party[CLIENT_SIZE];  /* the same for limits: of IPv6 the network of 64 bits */
   struct caller caller;
   bool bad_token;          /* one was sent, but it is nobody's */
   enum role least_role;    /* that the route asks for */

@@ -2,7 +2,7 @@
 # Requests that two parsers may read differently, cross-site requests, slow and many clients.
 . "$(dirname "$0")/lib.sh"
 RAW=${RAW:-$BIN/tests/api/raw_client}
-start_daemon --header-timeout 2 --solver "$(solver 'result succeeded')"
+start_daemon --header-timeout 2 --body-timeout 2 --solver "$(solver 'result succeeded')"
 
 # raw WHAT STATUS END REQUEST [DELAY [SILENCE]]: sends the bytes (printf escapes); END is closed or open.
 raw() {
