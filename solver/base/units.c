@@ -243,44 +243,102 @@ static size_t number_length(const char *text) {
   return (size_t)(at - text);
 }
 
-/* Bytes of the sign beyond ASCII at the start of `text` that may be part of a unit, 0 for others:
- * UDUNITS overlooks some of those that it does not know. */
-static size_t sign_length(const char *text) {
-  static const char *const signs[] = {"\xC2\xB5", "\xCE\xBC", "\xC2\xB0", "\xC2\xB2",
-                                      "\xC2\xB3", "\xC2\xB9", "\xC2\xB7", "\xE2\x81\xBB"};
+/* Length of the name at the start of `text`: letters with digits between them ("inH2O"), or one of
+ * the signs. */
+static size_t name_length(const char *text) {
+  static const char *const signs[] = {"%", "\xC2\xB0"};
   for (size_t i = 0; i < sizeof signs / sizeof *signs; i++) {
     if (strncmp(text, signs[i], strlen(signs[i])) == 0) {
-      return strlen(signs[i]);
+      size_t letter = i == 1 && isalpha((unsigned char)text[2]);
+      return strlen(signs[i]) + letter; /* the degree Celsius */
     }
   }
-  return 0;
+  size_t length = 0;
+  for (const char *at = text;;) {
+    bool micro = strncmp(at, "\xC2\xB5", 2) == 0 || strncmp(at, "\xCE\xBC", 2) == 0;
+    if (micro || isalpha((unsigned char)*at) || *at == '_') {
+      at += 1 + micro;
+      length = (size_t)(at - text);
+    } else if (length > 0 && isdigit((unsigned char)*at)) {
+      at++;
+    } else {
+      return length;
+    }
+  }
+}
+
+/* Length of the exponent at the start of `text`, of one digit: "2", "-2", "^-2", or raised. */
+static size_t exponent_length(const char *text) {
+  static const char *const digits[] = {"\xC2\xB9", "\xC2\xB2", "\xC2\xB3"};
+  size_t minus = strncmp(text, "\xE2\x81\xBB", 3) == 0 ? 3 : 0;
+  for (size_t i = 0; i < sizeof digits / sizeof *digits; i++) {
+    if (strncmp(text + minus, digits[i], 2) == 0) {
+      return minus + 2;
+    }
+  }
+  size_t sign = text[0] == '^';
+  sign += text[sign] == '-';
+  return isdigit((unsigned char)text[sign]) ? sign + 1 : 0;
+}
+
+/* Length of what multiplies or divides at the start of `text`: spaces, or a sign with or without
+ * them. */
+static size_t operator_length(const char *text) {
+  size_t spaces = strspn(text, " ");
+  const char *at = text + spaces;
+  size_t sign = strncmp(at, "\xC2\xB7", 2) == 0 ? 2 : *at && strchr("/*.-", *at);
+  sign = strncmp(at, "per ", 4) == 0 && spaces > 0 ? 4 : sign;
+  return spaces + sign + strspn(at + sign, " ");
+}
+
+/* Whether a shift of the origin stands for the name: "m from 5". */
+static bool is_shift(const char *name, size_t length) {
+  static const char *const words[] = {"since", "after", "from", "ref", "per"};
+  for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+    if (length == strlen(words[i]) && strncmp(name, words[i], length) == 0) {
+      return true;
+    }
+  }
+  return false;
 }
 
 /* UDUNITS takes whole expressions: factors ("3 kPa"), shifts ("m @ 5"), logarithms. After the
- * number only a plain unit may follow: letters, products, quotients, one-digit powers. */
-static bool is_plain_unit(const char *unit) {
+ * number only a plain unit may follow: names, products, quotients, one-digit powers, parentheses.
+ * Its parser loses memory where a text is malformed or a name unknown, so it is given neither: each
+ * name is looked for alone first. Call with the lock held. */
+static bool is_known_unit(const struct units *units, const char *unit) {
   const char *at = strncmp(unit, "1/", 2) == 0 ? unit + 2 : unit;
-  int previous = 0;
-  while (*at) {
-    unsigned char c = (unsigned char)*at;
-    bool after_name = isalpha(previous) || previous == ')';
-    size_t length = c < 0x80 ? 1 : sign_length(at);
-    bool allowed = length > 0;
-    if (isdigit(c)) {
-      allowed = after_name || previous == '^' || previous == '-';
-    } else if (c == '-') {
-      allowed = after_name || previous == '^';
-    } else if (c < 0x80) {
-      allowed = isalpha(c) || strchr(" ./*^()%_", c);
+  struct dimension ignored;
+  int open = 0;
+  for (;;) {
+    while (*at == '(') {
+      at++;
+      open++;
     }
-    if (!allowed) {
+    char name[QUANTITY_MAX + 1];
+    size_t length = name_length(at);
+    if (length == 0 || length >= sizeof name || is_shift(at, length)) {
       return false;
     }
-    previous = c < 0x80 ? c : 'x';
+    memcpy(name, at, length);
+    name[length] = '\0';
+    if (!parse_unit(units, name, &ignored)) {
+      return false;
+    }
+    at += length + exponent_length(at + length);
+    for (; *at == ')' && open > 0; open--) {
+      at++;
+      at += exponent_length(at);
+    }
+    if (*at == '\0') {
+      return open == 0;
+    }
+    length = operator_length(at);
+    if (length == 0) {
+      return false;
+    }
     at += length;
   }
-  return strstr(unit, "since") == NULL && strstr(unit, "after") == NULL &&
-         strstr(unit, "from") == NULL && strstr(unit, "ref") == NULL;
 }
 
 static const char *dimension_name(const struct dimension *dimension) {
@@ -297,7 +355,7 @@ static enum status read_unit(const struct units *units, const char *name, const 
                              struct error *error) {
   struct dimension given, wanted;
   pthread_mutex_lock(&library_lock);
-  bool known = is_plain_unit(name) && parse_unit(units, name, &given);
+  bool known = is_known_unit(units, name) && parse_unit(units, name, &given);
   bool wanted_known = parse_unit(units, unit, &wanted);
   pthread_mutex_unlock(&library_lock);
   if (!wanted_known || !wanted.linear) {
