@@ -165,12 +165,13 @@ static void print_document(json_t *document) {
 static int report(const struct error *error) {
   bool invalid = error->status == STATUS_INVALID || error->status == STATUS_SYNTAX ||
                  error->status == STATUS_GEOMETRY || error->status == STATUS_TOO_LARGE;
-  fprintf(stderr, "pneulab-solve: %s%s%s\n", error->pointer, error->pointer[0] ? ": " : "",
-          error->message);
-  print_document(json_pack("{s:s, s:{s:s, s:s, s:s, s:i, s:i}}", "status",
-                           invalid ? "invalid" : "error", "error", "code",
-                           status_word(error->status), "message", error->message, "pointer",
-                           error->pointer, "line", error->line, "column", error->column));
+  char text[ERROR_TEXT_MAX];
+  fprintf(stderr, "pneulab-solve: %s\n", error_describe(error, text, sizeof text));
+  json_t *problem = json_pack("{s:s, s:s, s:s}", "code", status_word(error->status), "message",
+                              error->message, "pointer", error->pointer);
+  json_set_error(problem, error);
+  print_document(
+      json_pack("{s:s, s:o}", "status", invalid ? "invalid" : "error", "error", problem));
   return invalid ? EXIT_INVALID_JOB : EXIT_INTERNAL;
 }
 

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "server/http/service.h"
+#include "solver/job/json.h"
 
 void reply_init(struct reply *reply) {
   *reply = (struct reply){.status = 200, .fd = -1};
@@ -182,14 +183,12 @@ static unsigned error_http_status(enum status status) {
 
 void reply_error(struct reply *reply, const struct error *error) {
   unsigned status = error_http_status(error->status);
+  char detail[ERROR_TEXT_MAX];
   json_t *problem = problem_make(status, status_word(error->status), status_sentence(error->status),
-                                 error->message);
+                                 error_describe(error, detail, sizeof detail));
   if (problem && error->status <= STATUS_GEOMETRY) {
     json_object_set_new(problem, "pointer", json_string(error->pointer));
   }
-  if (problem && error->line > 0) {
-    json_object_set_new(problem, "line", json_integer(error->line));
-    json_object_set_new(problem, "column", json_integer(error->column));
-  }
+  json_set_error(problem, error);
   reply_json_typed(reply, status, "application/problem+json", problem);
 }

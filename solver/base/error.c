@@ -1,7 +1,9 @@
 #include "solver/base/error.h"
 
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "solver/base/text.h"
 
@@ -23,20 +25,60 @@ const char *status_sentence(enum status status) {
   return (unsigned)status < STATUS_COUNT ? sentences[status] : "unknown status";
 }
 
+/* Copies a part; cutting at the field's size, or a library's own message, may break a character,
+ * and no JSON writer would take it then. */
+static void copy(char *field, size_t size, const char *text) {
+  snprintf(field, size, "%s", text);
+  text_repair(field);
+}
+
 enum status error_set(struct error *error, enum status status, const char *pointer,
                       const char *format, ...) {
   if (!error) {
     return status;
   }
   *error = (struct error){.status = status};
-  snprintf(error->pointer, sizeof error->pointer, "%s", pointer ? pointer : "");
+  copy(error->pointer, sizeof error->pointer, pointer ? pointer : "");
+  char text[sizeof error->message];
   va_list arguments;
   va_start(arguments, format);
-  vsnprintf(error->message, sizeof error->message, format, arguments);
+  vsnprintf(text, sizeof text, format, arguments);
   va_end(arguments);
-  /* Cutting at the field's size, or a library's own message, may break a character; no JSON writer
-   * would take it then. */
-  text_repair(error->pointer);
+  char *rest = text;
+  const char *found = strsep(&rest, "\n");
+  const char *allowed = strsep(&rest, "\n");
+  if (allowed) {
+    copy(error->found, sizeof error->found, found);
+    copy(error->allowed, sizeof error->allowed, allowed);
+    copy(error->example, sizeof error->example, rest ? rest : "");
+  }
+  snprintf(error->message, sizeof error->message, "%s%s%s%s%s", found, allowed ? ": " : "",
+           allowed ? allowed : "", rest ? "; for example " : "", rest ? rest : "");
   text_repair(error->message);
   return status;
+}
+
+void error_carry(struct error *error, const char *pointer, const char *format, ...) {
+  char words[sizeof error->message];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(words, sizeof words, format, arguments);
+  va_end(arguments);
+  const struct error inner = *error;
+  snprintf(error->message, sizeof error->message, "%.300s%s", words, inner.message);
+  text_repair(error->message);
+  copy(error->pointer, sizeof error->pointer, pointer);
+}
+
+const char *error_describe(const struct error *error, char *out, size_t size) {
+  char place[60] = "";
+  bool pointer = error->pointer[0] != '\0';
+  if (error->line > 0) {
+    snprintf(place, sizeof place, "%sline %d, column %d%s", pointer ? " (" : "", error->line,
+             error->column, pointer ? ")" : "");
+  }
+  snprintf(out, size, "%s%s%s%s", error->pointer, place, pointer || place[0] ? ": " : "",
+           error->message);
+  text_repair(out);
+  return out;
 }

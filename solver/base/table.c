@@ -153,10 +153,12 @@ static char find_delimiter(struct scanner *scanner, const struct reading *readin
 static enum status refuse_record(const struct reading *reading, int code, int line) {
   if (code == -2) {
     return error_set(reading->error, STATUS_TOO_LARGE, reading->pointer,
-                     "line %d of the table has more than %d columns", line, TABLE_FIELDS_MAX);
+                     "line %d of the table has too many columns\nat most %d", line,
+                     TABLE_FIELDS_MAX);
   }
   return error_set(reading->error, STATUS_INVALID, reading->pointer,
-                   "line %d of the table opens a quote (\") that is never closed", line);
+                   "line %d of the table opens a quote (\") that is never closed\nquotes in pairs",
+                   line);
 }
 
 static size_t find_field(const struct record *record, const char *name) {
@@ -215,8 +217,8 @@ static enum status find_header(struct scanner *scanner, const struct reading *re
   }
   if (best_line == 0) {
     return error_set(reading->error, STATUS_INVALID, reading->pointer,
-                     "the table has no line with the names of its columns; for example "
-                     "\"Strain,Stress (MPa)\" above the numbers");
+                     "the table has no line with the names of its columns\nsuch a line, for "
+                     "example \"Strain,Stress (MPa)\" above the numbers");
   }
   *scanner = behind;
   while (read_record(scanner, header) == 1 && header->line < best_line) {
@@ -245,7 +247,7 @@ static enum status refuse_name(const struct reading *reading, const struct recor
     snprintf(hint, sizeof hint, " (did you mean %s?)", text_quote(known, sizeof known, near));
   }
   return error_set(reading->error, STATUS_INVALID, wanted->pointer,
-                   "the table has no column %s%s: its header, line %d, has %s",
+                   "the table has no column %s%s: its header, line %d, has others\n%s",
                    text_quote(name, sizeof name, wanted->name), hint, header->line, list);
 }
 
@@ -261,8 +263,8 @@ static enum status place_columns(struct reading *reading, const struct record *h
     for (size_t k = place + 1; k < header->count; k++) {
       if (strcmp(header->field[k], wanted->name) == 0) {
         return error_set(reading->error, STATUS_INVALID, wanted->pointer,
-                         "columns %zu and %zu of the table (line %d) are both called %s: rename "
-                         "one of them",
+                         "columns %zu and %zu of the table (line %d) are both called %s\ndifferent "
+                         "names: rename one of them",
                          place + 1, k + 1, header->line,
                          text_quote(name, sizeof name, wanted->name));
       }
@@ -397,10 +399,10 @@ static enum status read_rows(struct scanner *scanner, struct reading *reading,
       continue;
     }
     if (table->rows == TABLE_ROWS_MAX) {
-      return error_set(reading->error, STATUS_TOO_LARGE, reading->pointer,
-                       "line %d of the table: more than %d rows; leave out points, they need not "
-                       "be so close",
-                       record->line, TABLE_ROWS_MAX);
+      return error_set(
+          reading->error, STATUS_TOO_LARGE, reading->pointer,
+          "line %d of the table\nat most %d rows: leave out points, they need not be so close",
+          record->line, TABLE_ROWS_MAX);
     }
     enum status status = grow(reading, &capacity);
     for (size_t i = 0; i < reading->count && status == STATUS_OK; i++) {

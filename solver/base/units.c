@@ -41,14 +41,27 @@ static const struct {
   const char *name;
   int power[BASE_COUNT];
 } dimension_names[] = {
-    {"a length", {1, 0, 0, 0, 0}},      {"an area", {2, 0, 0, 0, 0}},
-    {"a volume", {3, 0, 0, 0, 0}},      {"a mass", {0, 1, 0, 0, 0}},
-    {"a time", {0, 0, 1, 0, 0}},        {"an angle", {0, 0, 0, 1, 0}},
-    {"a pressure", {-1, 1, -2, 0, 0}},  {"a force", {1, 1, -2, 0, 0}},
-    {"a speed", {1, 0, -1, 0, 0}},      {"an acceleration", {1, 0, -2, 0, 0}},
-    {"a density", {-3, 1, 0, 0, 0}},    {"a rate", {0, 0, -1, 0, 0}},
-    {"a pure number", {0, 0, 0, 0, 0}}, {"a stiffness", {0, 1, -2, 0, 0}},
-    {"a damping", {0, 1, -1, 0, 0}},    {"an amount of memory", {0, 0, 0, 0, 1}},
+    {"a length", {1, 0, 0, 0, 0}},
+    {"an area", {2, 0, 0, 0, 0}},
+    {"a volume", {3, 0, 0, 0, 0}},
+    {"a mass", {0, 1, 0, 0, 0}},
+    {"a time", {0, 0, 1, 0, 0}},
+    {"an angle", {0, 0, 0, 1, 0}},
+    {"a pressure", {-1, 1, -2, 0, 0}},
+    {"a force", {1, 1, -2, 0, 0}},
+    {"a speed", {1, 0, -1, 0, 0}},
+    {"an acceleration", {1, 0, -2, 0, 0}},
+    {"a density", {-3, 1, 0, 0, 0}},
+    {"a rate", {0, 0, -1, 0, 0}},
+    {"a pure number", {0, 0, 0, 0, 0}},
+    {"a stiffness", {0, 1, -2, 0, 0}},
+    {"a damping", {0, 1, -1, 0, 0}},
+    {"a torque", {2, 1, -2, 0, 0}},
+    {"a moment of inertia", {2, 1, 0, 0, 0}},
+    {"an angular speed", {0, 0, -1, 1, 0}},
+    {"a rate of pressure", {-1, 1, -3, 0, 0}},
+    {"a conductance", {4, -1, 1, 0, 0}},
+    {"an amount of memory", {0, 0, 0, 0, 1}},
 };
 
 /* ---- taking a unit apart ---------------------------------------------------------------- */
@@ -350,6 +363,14 @@ static const char *dimension_name(const struct dimension *dimension) {
   return "another kind of quantity";
 }
 
+const char *units_dimension(const struct units *units, const char *unit) {
+  struct dimension wanted;
+  pthread_mutex_lock(&library_lock);
+  bool known = parse_unit(units, unit, &wanted);
+  pthread_mutex_unlock(&library_lock);
+  return known ? dimension_name(&wanted) : "a quantity";
+}
+
 static enum status read_unit(const struct units *units, const char *name, const char *number,
                              const char *quoted, const char *unit, double *scale,
                              struct error *error) {
@@ -364,18 +385,19 @@ static enum status read_unit(const struct units *units, const char *name, const 
   }
   if (!known) {
     return error_set(error, STATUS_INVALID, NULL,
-                     "%s has an unknown unit: write %s with its unit, for example \"%s %s\"",
-                     quoted, dimension_name(&wanted), number, unit);
+                     "%s has an unknown unit\n%s with its unit\n\"%s %s\"", quoted,
+                     dimension_name(&wanted), number, unit);
   }
   if (!given.linear) {
     return error_set(error, STATUS_INVALID, NULL,
-                     "%s is not a plain multiple of %s: write for example \"%s %s\"", quoted, unit,
-                     number, unit);
+                     "%s is not a plain multiple of %s\n%s with its unit\n\"%s %s\"", quoted, unit,
+                     dimension_name(&wanted), number, unit);
   }
   if (memcmp(given.power, wanted.power, sizeof given.power) != 0) {
     return error_set(error, STATUS_INVALID, NULL,
-                     "%s is %s, but %s is wanted: write for example \"%s %s\"", quoted,
-                     dimension_name(&given), dimension_name(&wanted), number, unit);
+                     "%s is %s, but %s is wanted\n%s with its unit\n\"%s %s\"", quoted,
+                     dimension_name(&given), dimension_name(&wanted), dimension_name(&wanted),
+                     number, unit);
   }
   *scale = given.scale;
   return STATUS_OK;
@@ -387,22 +409,22 @@ enum status units_read(const struct units *units, const char *text, const char *
   text_quote(quoted, sizeof quoted, text);
   if (strnlen(text, QUANTITY_MAX + 1) > QUANTITY_MAX) {
     return error_set(error, STATUS_INVALID, NULL,
-                     "%s is longer than %d characters: write for example \"1 %s\"", quoted,
-                     QUANTITY_MAX, unit);
+                     "%s is longer than %d characters\n%s with its unit\n\"1 %s\"", quoted,
+                     QUANTITY_MAX, units_dimension(units, unit), unit);
   }
   size_t length = number_length(text);
   if (length == 0) {
     return error_set(error, STATUS_INVALID, NULL,
-                     "%s does not begin with a decimal number: write for example \"1 %s\"", quoted,
-                     unit);
+                     "%s does not begin with a decimal number\n%s with its unit\n\"1 %s\"", quoted,
+                     units_dimension(units, unit), unit);
   }
   char number[QUANTITY_MAX + 1];
   memcpy(number, text, length);
   number[length] = '\0';
   const char *name = text + length + strspn(text + length, " ");
   if (*name == '\0') {
-    return error_set(error, STATUS_INVALID, NULL, "%s has no unit: write \"%s %s\"", quoted, number,
-                     unit);
+    return error_set(error, STATUS_INVALID, NULL, "%s has no unit\n%s with its unit\n\"%s %s\"",
+                     quoted, units_dimension(units, unit), number, unit);
   }
   double scale = 0.0;
   enum status status = read_unit(units, name, number, quoted, unit, &scale, error);
@@ -414,7 +436,8 @@ enum status units_read(const struct units *units, const char *text, const char *
   bool vanished = value != 0.0 && value * scale == 0.0;
   if (errno == ERANGE || vanished || !isfinite(value * scale)) {
     return error_set(error, STATUS_INVALID, NULL,
-                     "%s is beyond the range of numbers: write for example \"1 %s\"", quoted, unit);
+                     "%s is beyond the range of numbers\n%s with its unit\n\"1 %s\"", quoted,
+                     units_dimension(units, unit), unit);
   }
   *value_si = value * scale;
   return STATUS_OK;

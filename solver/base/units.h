@@ -22,4 +22,7 @@ void units_destroy(struct units *units);
 enum status units_read(const struct units *units, const char *text, const char *unit,
                        double *value_si, struct error *error);
 
+/* What a unit measures: "a length" of "mm". Static storage. */
+const char *units_dimension(const struct units *units, const char *unit);
+
 #endif

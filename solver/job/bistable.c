@@ -38,7 +38,7 @@ static enum status read_number(const json_t *object, const char *key, double uni
     return STATUS_OK;
   }
   return error_set(error, STATUS_INVALID, where,
-                   "the number \"%s\" is wanted; for example { \"h_mm\": 1.5, \"force_N\": 12.1, "
+                   "the number \"%s\" is missing\na number\n{ \"h_mm\": 1.5, \"force_N\": 12.1, "
                    "\"volume_mm3\": 8400, \"energy_mJ\": 9.2 }",
                    key);
 }
@@ -58,7 +58,7 @@ static enum status read_point(const json_t *point, const char *where, struct law
   if (status == STATUS_OK && i > 0 && level->h[i] == level->h[i - 1] &&
       level->force[i] == level->force[i - 1]) {
     status = error_set(error, STATUS_INVALID, where,
-                       "the point is the one before it again: the points of a path follow one "
+                       "the point is the one before it again\nthe points of a path follow one "
                        "another along its length");
   }
   return status;
@@ -69,10 +69,10 @@ static enum status read_level(const json_t *value, const char *pointer, struct l
   const json_t *points = json_object_get(value, "points");
   size_t count = json_array_size(points), energies = 0;
   if (count < POINTS_MIN || count > BISTABLE_LEVEL_POINTS_MAX) {
-    return error_set(error, STATUS_INVALID, pointer,
-                     "the path has %zu points; %d to %d are wanted, from the compressed to the "
-                     "stretched side",
-                     count, POINTS_MIN, BISTABLE_LEVEL_POINTS_MAX);
+    return error_set(
+        error, STATUS_INVALID, pointer,
+        "the path has %zu points\n%d to %d points, from the compressed to the stretched side",
+        count, POINTS_MIN, BISTABLE_LEVEL_POINTS_MAX);
   }
   level->h = calloc(COLUMNS * count, sizeof *level->h);
   if (!level->h) {
@@ -104,7 +104,7 @@ enum status law_table_read(const json_t *law, const char *pointer, struct law_ta
   *table = (struct law_table){0};
   if (count < 2 || count > BISTABLE_LEVELS_MAX) {
     return error_set(error, STATUS_INVALID, pointer,
-                     "paths at %zu pressures; 2 to %d are wanted, for the forces between two of "
+                     "there are paths at %zu pressures\n2 to %d, for the forces between two of "
                      "them are interpolated",
                      count, BISTABLE_LEVELS_MAX);
   }
@@ -115,10 +115,10 @@ enum status law_table_read(const json_t *law, const char *pointer, struct law_ta
     snprintf(where, sizeof where, "%.150s/%zu", pointer, i);
     enum status status = read_number(value, "pressure_kPa", 1e3, where, &level->pressure, error);
     if (status == STATUS_OK && i > 0 && !(level->pressure > level[-1].pressure)) {
-      status = error_set(error, STATUS_INVALID, where,
-                         "the pressure %.6g kPa is not above the one before it, %.6g kPa: they "
-                         "must rise",
-                         1e-3 * level->pressure, 1e-3 * level[-1].pressure);
+      status = error_set(
+          error, STATUS_INVALID, where,
+          "the pressure %.6g kPa is not above the one before it, %.6g kPa\npressures that rise",
+          1e-3 * level->pressure, 1e-3 * level[-1].pressure);
     }
     if (status == STATUS_OK) {
       status = read_level(value, where, level, error);

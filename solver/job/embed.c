@@ -204,16 +204,15 @@ static enum status look_at(struct embedding *embedding, json_t *parent, const st
   if (name) {
     size_t inner = json_pointer_key(&embedding->pointer, "file");
     if (!embedding->read) {
-      status = error_set(embedding->error, STATUS_INVALID, embedding->pointer.text,
-                         "a file can be named on the command line only: send its content instead; "
-                         "\"pneulab-solve --embed JOB.json\" prints the job with the content of "
-                         "its files in their place");
+      status = error_set(
+          embedding->error, STATUS_INVALID, embedding->pointer.text,
+          "a file can be named on the command line only\nsend its content instead; \"pneulab-solve "
+          "--embed JOB.json\" prints the job with the content of its files in their place");
     } else if (json_is_string(name) && json_object_size(value) == 1) {
       status = embed_one(embedding, parent, slot, json_string_value(name), folder, level);
     } else {
       status = error_set(embedding->error, STATUS_INVALID, embedding->pointer.text,
-                         "a file is named by one string and nothing beside it; for example "
-                         "{ \"file\": \"%s\" }",
+                         "this names no file\none string and nothing beside it\n\"%s\"",
                          slot->table ? "curve.csv" : "baseline.json");
     }
     json_pointer_pop(&embedding->pointer, inner);

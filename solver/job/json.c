@@ -1,37 +1,49 @@
 #include "solver/job/json.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "solver/base/text.h"
+
+/* ---- places -------------------------------------------------------------------------------- */
+
+static void count_place(const char *text, size_t offset, int *line, int *column) {
+  *line = *column = 1;
+  for (size_t i = 0; i < offset; i++) {
+    *column += ((unsigned char)text[i] & 0xC0) != 0x80;
+    if (text[i] == '\n') {
+      ++*line;
+      *column = 1;
+    }
+  }
+}
+
+static void place(const char *text, size_t offset, struct error *error) {
+  if (error) {
+    count_place(text, offset, &error->line, &error->column);
+  }
+}
+
 /* ---- reading ---------------------------------------------------------------------------- */
 
 /* Jansson has its own, far larger limit; this one is checked before anything is built. */
 static enum status check_depth(const char *text, size_t size, struct error *error) {
-  int depth = 0, line = 1, column = 0;
+  int depth = 0;
   bool in_string = false;
   for (size_t i = 0; i < size; i++) {
-    unsigned char c = (unsigned char)text[i];
-    column += (c & 0xC0) != 0x80;
-    if (c == '\n') {
-      line++;
-      column = 0;
-    }
+    char c = text[i];
     if (in_string) {
       i += c == '\\';
-      column += c == '\\';
       in_string = c != '"';
     } else if (c == '"') {
       in_string = true;
     } else if ((c == '{' || c == '[') && ++depth > JSON_DEPTH_MAX) {
       error_set(error, STATUS_SYNTAX, NULL,
-                "objects and arrays are nested deeper than %d levels, the most that is allowed",
-                JSON_DEPTH_MAX);
-      if (error) {
-        error->line = line;
-        error->column = column;
-      }
+                "objects and arrays are nested too deep\nat most %d levels", JSON_DEPTH_MAX);
+      place(text, i, error);
       return STATUS_SYNTAX;
     } else if (c == '}' || c == ']') {
       depth--;
@@ -40,11 +52,117 @@ static enum status check_depth(const char *text, size_t size, struct error *erro
   return STATUS_OK;
 }
 
+/* Where the piece of text that ends at `end` begins: a string with its quotes, or a word. */
+static size_t piece_start(const char *text, size_t end) {
+  size_t at = end;
+  if (at > 0 && text[at - 1] == '"') {
+    for (at--; at > 0 && text[at - 1] != '"' && text[at - 1] != '\n';) {
+      at--;
+    }
+    return at > 0 ? at - 1 : 0;
+  }
+  while (at > 0 && (isalnum((unsigned char)text[at - 1]) || strchr("+-._", text[at - 1])) &&
+         text[at - 1] != '\0') {
+    at--;
+  }
+  return at < end ? at : end > 0 ? end - 1 : 0;
+}
+
+/* What is wrong with a piece that is no JSON, and what would be right. */
+static const char *piece_advice(const char *piece, size_t length) {
+  static const struct {
+    const char *start, *advice;
+  } known[] = {
+      {"NaN", "the word NaN is no JSON\na finite number\n0.5"},
+      {"nan", "the word nan is no JSON\na finite number\n0.5"},
+      {"-I", "Infinity is no JSON\na finite number\n1e6"},
+      {"I", "Infinity is no JSON\na finite number\n1e6"},
+      {"inf", "Infinity is no JSON\na finite number\n1e6"},
+      {"//", "JSON has no remarks\ntext under the key \"comment\"\n{\"comment\": \"a remark\"}"},
+      {"/*", "JSON has no remarks\ntext under the key \"comment\"\n{\"comment\": \"a remark\"}"},
+      {"#", "JSON has no remarks\ntext under the key \"comment\"\n{\"comment\": \"a remark\"}"},
+      {"'", "a single quote begins no string\ntext in double quotes\n\"fast\""},
+      {"True", "True is no JSON\ntrue or false in small letters\ntrue"},
+      {"False", "False is no JSON\ntrue or false in small letters\nfalse"},
+      {"None", "None is no JSON\na value, or the key left out\nnull"},
+      {"}", "a brace ends the object where a key or value is due\nno comma before it"},
+      {"]", "a bracket ends the array where a value is due\nno comma before it"},
+      {"+", "a number begins with a plus sign\nits digits, or a minus sign\n1.5"},
+      {".", "a number begins with a point\na digit before it\n0.5"},
+      {"0", "a number begins with a zero before other digits\nno leading zero\n1"},
+  };
+  for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+    size_t start = strlen(known[i].start);
+    if (length >= start && strncmp(piece, known[i].start, start) == 0) {
+      return known[i].advice;
+    }
+  }
+  return NULL;
+}
+
+/* Says what Jansson found, with the place where the offending piece begins. */
+static enum status refuse_syntax(const char *text, size_t size, const json_error_t *problem,
+                                 struct error *error) {
+  static const char example[] = "{\"kind\": \"verify\", \"case\": \"elastica\"}";
+  size_t end = problem->position > 0 ? (size_t)problem->position : 0;
+  size_t start = piece_start(text, end < size ? end : size);
+  const char *advice = piece_advice(text + start, size - start);
+  char piece[64], quoted[70];
+  snprintf(piece, sizeof piece, "%.*s", (int)(end > start && end <= size ? end - start : 0),
+           text + start);
+  text_quote(quoted, sizeof quoted, piece);
+  switch (json_error_code(problem)) {
+  case json_error_out_of_memory:
+    return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the document");
+  case json_error_duplicate_key:
+    error_set(error, STATUS_SYNTAX, NULL,
+              "the key %s stands twice in one object, a duplicate object key\neach key once",
+              piece);
+    break;
+  case json_error_premature_end_of_input:
+    start = size;
+    error_set(error, STATUS_SYNTAX, NULL,
+              "not well-formed JSON: the text %s\na whole JSON object\n%s",
+              strspn(text, " \t\r\n") >= size ? "is empty" : "ends too early", example);
+    break;
+  case json_error_end_of_input_expected:
+    error_set(error, STATUS_SYNTAX, NULL,
+              "%s follows the document, where the end of file is due\none JSON object alone",
+              quoted);
+    break;
+  case json_error_numeric_overflow:
+    error_set(error, STATUS_SYNTAX, NULL,
+              "the number %s is too big (overflow)\nnumbers up to 1e308, whole ones up to "
+              "9223372036854775807",
+              piece);
+    break;
+  case json_error_null_byte_in_key:
+  case json_error_null_character:
+    error_set(error, STATUS_SYNTAX, NULL, "the string has a NUL character\ntext without one");
+    break;
+  case json_error_invalid_utf8:
+    error_set(error, STATUS_SYNTAX, NULL,
+              "not well-formed JSON: %s\ntext in UTF-8, without a byte order mark", problem->text);
+    break;
+  default:
+    error_set(error, STATUS_SYNTAX, NULL, "not well-formed JSON: %s",
+              advice ? advice : problem->text);
+  }
+  place(text, start, error);
+  return STATUS_SYNTAX;
+}
+
 enum status json_text_read(const char *text, size_t size, json_t **root, struct error *error) {
+  static const char mark[] = "\xEF\xBB\xBF";
   if (size > JSON_TEXT_MAX) {
     return error_set(error, STATUS_TOO_LARGE, NULL,
-                     "the document has %zu bytes; at most %d (1 MiB) are allowed", size,
-                     JSON_TEXT_MAX);
+                     "the document has %zu bytes\nat most %d (1 MiB)", size, JSON_TEXT_MAX);
+  }
+  if (size >= 3 && memcmp(text, mark, 3) == 0) {
+    error_set(error, STATUS_SYNTAX, NULL,
+              "a byte order mark stands before the document\nthe document alone, in UTF-8");
+    place(text, 0, error);
+    return STATUS_SYNTAX;
   }
   enum status status = check_depth(text, size, error);
   if (status != STATUS_OK) {
@@ -52,18 +170,7 @@ enum status json_text_read(const char *text, size_t size, json_t **root, struct 
   }
   json_error_t problem;
   *root = json_loadb(text, size, JSON_REJECT_DUPLICATES, &problem);
-  if (*root) {
-    return STATUS_OK;
-  }
-  if (json_error_code(&problem) == json_error_out_of_memory) {
-    return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the document");
-  }
-  error_set(error, STATUS_SYNTAX, NULL, "not well-formed JSON: %s", problem.text);
-  if (error) {
-    error->line = problem.line > 0 ? problem.line : 1;
-    error->column = problem.column > 0 ? problem.column : 1;
-  }
-  return STATUS_SYNTAX;
+  return *root ? STATUS_OK : refuse_syntax(text, size, &problem, error);
 }
 
 /* ---- pointers --------------------------------------------------------------------------- */
@@ -208,14 +315,7 @@ void json_text_locate(const char *text, size_t size, const char *pointer, int *l
     found = scan.at;
     pointer += 1 + length;
   }
-  *line = *column = 1;
-  for (const char *at = text; at < found; at++) {
-    *column += ((unsigned char)*at & 0xC0) != 0x80;
-    if (*at == '\n') {
-      ++*line;
-      *column = 1;
-    }
-  }
+  count_place(text, (size_t)(found - text), line, column);
 }
 
 const char *json_type_phrase(const json_t *value) {
@@ -240,6 +340,25 @@ const char *json_type_phrase(const json_t *value) {
 void json_set_finite(json_t *object, const char *key, double value) {
   if (isfinite(value)) {
     json_object_set_new(object, key, json_real(value));
+  }
+}
+
+void json_set_error(json_t *problem, const struct error *error) {
+  const struct {
+    const char *key, *text;
+  } parts[] = {{"found", error->found}, {"allowed", error->allowed}, {"nearest", error->nearest}};
+  if (error->line > 0) {
+    json_object_set_new(problem, "line", json_integer(error->line));
+    json_object_set_new(problem, "column", json_integer(error->column));
+  }
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+    if (parts[i].text[0] != '\0') {
+      json_object_set_new(problem, parts[i].key, json_string(parts[i].text));
+    }
+  }
+  json_t *example = error->example[0] ? json_loads(error->example, JSON_DECODE_ANY, NULL) : NULL;
+  if (example) {
+    json_object_set_new(problem, "example", example);
   }
 }
 

@@ -36,6 +36,10 @@ void json_pointer_pop(struct json_pointer *pointer, size_t mark);
 /* Stores a number under `key` of an object unless it is not finite. */
 void json_set_finite(json_t *object, const char *key, double value);
 
+/* Adds what is known of an error to the object of a problem: line and column, found, allowed,
+ * nearest, and example as a value. Parts for which there is no memory are left out. */
+void json_set_error(json_t *problem, const struct error *error);
+
 /* `count` texts, each in `size` bytes, as an array of strings; a new reference. */
 json_t *json_texts(const char *text, size_t size, int count);
 

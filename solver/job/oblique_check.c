@@ -24,14 +24,15 @@ static enum status check_width(const struct oblique_spec *s, struct error *error
     return error_set(error, STATUS_GEOMETRY,
                      centre ? "/actuator/centre_wall" : "/actuator/side_wall",
                      "two side walls of %.6g mm and a centre wall of %.6g mm leave no cavities of "
-                     "0.1 mm in a width of %.6g mm: a %s wall can be at most %.6g mm thick",
+                     "0.1 mm in a width of %.6g mm\na %s wall can be at most %.6g mm thick",
                      to_mm(s->side_wall), to_mm(s->centre_wall), to_mm(s->width),
                      centre ? "centre" : "side", to_mm(fmax(room, 0.0)));
   }
   if (s->has_channel && s->channel_width > cavity) {
-    return error_set(error, STATUS_GEOMETRY, "/actuator/channel/width",
-                     "the channel of a row is %.6g mm wide, but its cavities only %.6g mm",
-                     to_mm(s->channel_width), to_mm(cavity));
+    return error_set(
+        error, STATUS_GEOMETRY, "/actuator/channel/width",
+        "the channel of a row is %.6g mm wide\nat most as much as its cavities, %.6g mm",
+        to_mm(s->channel_width), to_mm(cavity));
   }
   return STATUS_OK;
 }
@@ -40,14 +41,14 @@ static enum status check_height(const struct oblique_spec *s, struct error *erro
   double need = s->bottom_layer + s->top_wall + CAVITY_MINIMUM;
   if (s->height < need) {
     return error_set(error, STATUS_GEOMETRY, "/actuator/height",
-                     "bottom layer, top wall and a cavity of 0.1 mm take %.6g mm: a height of "
-                     "%.6g mm is too small",
-                     to_mm(need), to_mm(s->height));
+                     "a height of %.6g mm is too small for bottom layer, top wall and a cavity of "
+                     "0.1 mm\nat least %.6g mm",
+                     to_mm(s->height), to_mm(need));
   }
   if (s->has_channel && s->channel_cover + s->channel_height >= s->bottom_layer) {
     return error_set(error, STATUS_GEOMETRY, "/actuator/channel/height",
                      "a channel of %.6g mm under a cover of %.6g mm leaves no floor in a bottom "
-                     "layer of %.6g mm: the channel must be lower than %.6g mm",
+                     "layer of %.6g mm\nthe channel must be lower than %.6g mm",
                      to_mm(s->channel_height), to_mm(s->channel_cover), to_mm(s->bottom_layer),
                      to_mm(fmax(s->bottom_layer - s->channel_cover, 0.0)));
   }
@@ -74,7 +75,7 @@ static enum status refuse_angle(const struct oblique_spec *s, struct error *erro
   if (occupied(s, 0.0, 1) > room) {
     return error_set(error, STATUS_GEOMETRY, "/actuator/length",
                      "two solid ends of %.6g mm and one chamber of %.6g mm do not fit into a "
-                     "length of %.6g mm: it must be at least %.6g mm",
+                     "length of %.6g mm\nit must be at least %.6g mm",
                      to_mm(s->end), to_mm(occupied(s, 0.0, 1)), to_mm(s->length),
                      to_mm(2.0 * s->end + occupied(s, 0.0, 1)));
   }
@@ -84,8 +85,8 @@ static enum status refuse_angle(const struct oblique_spec *s, struct error *erro
   }
   return error_set(error, STATUS_GEOMETRY, "/actuator/chamber_angle",
                    "walls at %.6g deg to the cross-section leave no chamber: the first one would "
-                   "take %.6g mm of a length of %.6g mm, where the solid ends leave %.6g mm; the "
-                   "limit is %.4f deg, for example \"%.0f deg\" from the cross-section",
+                   "take %.6g mm of a length of %.6g mm, where the solid ends leave %.6g mm\nless "
+                   "than %.4f deg from the cross-section\n\"%.0f deg\"",
                    to_deg(s->angle), to_mm(occupied(s, s->angle, 1)), to_mm(s->length), to_mm(room),
                    to_deg(low), floor(to_deg(low)));
 }
@@ -96,8 +97,8 @@ static enum status check_angle(const struct oblique_spec *s, struct error *error
   }
   return error_set(error, STATUS_GEOMETRY, "/actuator/chamber_angle",
                    "walls at %.6g deg to the cross-section run along the body, and the rows meet "
-                   "only far out: at most %.6g deg from the cross-section or at least %.6g deg "
-                   "from the long axis, for example \"45 deg\"",
+                   "only far out\nat most %.6g deg from the cross-section or at least %.6g deg "
+                   "from the long axis\n\"45 deg\"",
                    to_deg(s->angle), to_deg(OBLIQUE_ANGLE_MAX), 90.0 - to_deg(OBLIQUE_ANGLE_MAX));
 }
 
@@ -121,16 +122,16 @@ enum status oblique_fit(bool chambers_given, struct oblique_spec *s, struct erro
   } else if (s->chamber_count > most) {
     return error_set(error, STATUS_GEOMETRY, "/actuator/chambers",
                      "%d chambers at %.6g deg to the cross-section take %.6g mm and overlap the "
-                     "solid ends of %.6g mm in a length of %.6g mm: at most %d fit",
+                     "solid ends of %.6g mm in a length of %.6g mm\nat most %d fit",
                      s->chamber_count, to_deg(s->angle),
                      to_mm(occupied(s, s->angle, s->chamber_count)), to_mm(s->end),
                      to_mm(s->length), most);
   }
   if (s->chamber_count > CHAMBERS_MAX) {
-    return error_set(error, STATUS_GEOMETRY, "/actuator/chambers",
-                     "%d chambers of each row would fit: at most %d are possible, so give their "
-                     "number, for example \"chambers\": 24",
-                     s->chamber_count, CHAMBERS_MAX);
+    return error_set(
+        error, STATUS_GEOMETRY, "/actuator/chambers",
+        "%d chambers of each row would fit\nat most %d, so give their number\n{\"chambers\": 24}",
+        s->chamber_count, CHAMBERS_MAX);
   }
   s->end = 0.5 * (s->length - occupied(s, s->angle, s->chamber_count));
   return STATUS_OK;

@@ -142,7 +142,7 @@ static enum status refuse(const struct reader *reader, const char *place, const 
   }
   const char *near = text_nearest(pointer, words, (size_t)count);
   return error_set(reader->error, STATUS_INVALID, place,
-                   "%s names no dimension or coefficient that this job gives%s%s%s; they are %s",
+                   "%s names no dimension or coefficient that this job gives%s%s%s\n%s",
                    text_quote(quoted, sizeof quoted, pointer), near ? ", did you mean \"" : "",
                    near ? near : "", near ? "\"?" : "", list);
 }
@@ -179,7 +179,8 @@ enum status reader_sensitivity(const struct reader *reader, const json_t *value,
       return refuse(reader, place, pointer, known, count);
     }
     if (find(s->parameter, s->count, pointer)) {
-      return error_set(reader->error, STATUS_INVALID, place, "\"%s\" stands here twice", pointer);
+      return error_set(reader->error, STATUS_INVALID, place,
+                       "\"%s\" stands here twice\neach pointer once", pointer);
     }
     s->parameter[s->count++] = *parameter;
   }

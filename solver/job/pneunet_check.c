@@ -47,30 +47,30 @@ static enum status check_width(const struct pneunet_spec *s, struct error *error
   double cavity = s->width - 2.0 * s->side_wall;
   if (cavity < CAVITY_MINIMUM) {
     return error_set(error, STATUS_GEOMETRY, "/actuator/side_wall",
-                     "two side walls of %.6g mm leave no cavity in a width of %.6g mm: a side wall "
+                     "two side walls of %.6g mm leave no cavity in a width of %.6g mm\na side wall "
                      "can be at most %.6g mm thick",
                      to_mm(s->side_wall), to_mm(s->width),
                      to_mm(0.5 * (s->width - CAVITY_MINIMUM)));
   }
   if (s->has_channel && s->channel_width > cavity) {
     return error_set(error, STATUS_GEOMETRY, "/actuator/channel/width",
-                     "the channel is %.6g mm wide, but the cavities only %.6g mm",
+                     "the channel is %.6g mm wide\nat most as much as the cavities, %.6g mm",
                      to_mm(s->channel_width), to_mm(cavity));
   }
   if (!has_config(s, CHAMBER_C)) {
     return STATUS_OK;
   }
   if (s->has_channel && s->stem <= 0.5 * s->channel_width) {
-    return error_set(error, STATUS_GEOMETRY, "/actuator/stem",
-                     "a stem of half width %.6g mm does not enclose the channel: it must be more "
-                     "than %.6g mm",
-                     to_mm(s->stem), to_mm(0.5 * s->channel_width));
+    return error_set(
+        error, STATUS_GEOMETRY, "/actuator/stem",
+        "a stem of half width %.6g mm does not enclose the channel\nit must be more than %.6g mm",
+        to_mm(s->stem), to_mm(0.5 * s->channel_width));
   }
   if (s->stem >= 0.5 * s->width) {
-    return error_set(error, STATUS_GEOMETRY, "/actuator/stem",
-                     "a stem of half width %.6g mm is as wide as the chamber: it must be less than "
-                     "%.6g mm",
-                     to_mm(s->stem), to_mm(0.5 * s->width));
+    return error_set(
+        error, STATUS_GEOMETRY, "/actuator/stem",
+        "a stem of half width %.6g mm is as wide as the chamber\nit must be less than %.6g mm",
+        to_mm(s->stem), to_mm(0.5 * s->width));
   }
   return STATUS_OK;
 }
@@ -84,7 +84,7 @@ static enum status check_lateral_taper(const struct pneunet_spec *s, double tape
   }
   return error_set(error, STATUS_GEOMETRY, pointer,
                    "a taper of %.6g deg leaves %.6g mm of half width at the tip, %.6g mm from the "
-                   "base, but %s need %.6g mm: the limit is %.4f deg",
+                   "base, but %s need %.6g mm\nthe limit is %.4f deg",
                    to_deg(taper), to_mm(tip), to_mm(s->length), need.what, to_mm(need.half_width),
                    to_deg(atan(fmax(0.5 * s->width - need.half_width, 0.0) / s->length)));
 }
@@ -93,12 +93,11 @@ static enum status check_channel_height(const struct pneunet_spec *s, struct err
   if (!s->has_channel || s->channel_cover + s->channel_height < s->bottom_layer) {
     return STATUS_OK;
   }
-  return error_set(
-      error, STATUS_GEOMETRY, "/actuator/channel/height",
-      "a channel of %.6g mm under a cover of %.6g mm leaves no floor in a bottom layer "
-      "of %.6g mm: the channel must be lower than %.6g mm",
-      to_mm(s->channel_height), to_mm(s->channel_cover), to_mm(s->bottom_layer),
-      to_mm(fmax(s->bottom_layer - s->channel_cover, 0.0)));
+  return error_set(error, STATUS_GEOMETRY, "/actuator/channel/height",
+                   "a channel of %.6g mm under a cover of %.6g mm leaves no floor in a bottom "
+                   "layer of %.6g mm\nthe channel must be lower than %.6g mm",
+                   to_mm(s->channel_height), to_mm(s->channel_cover), to_mm(s->bottom_layer),
+                   to_mm(fmax(s->bottom_layer - s->channel_cover, 0.0)));
 }
 
 /* Solid layers and slit over the height, with a cavity of the least height. */
@@ -115,13 +114,13 @@ static enum status check_height(const struct pneunet_spec *s, struct error *erro
                            : "bottom layer, top wall and a cavity of 0.1 mm";
   if (s->height_base < need) {
     return error_set(error, STATUS_GEOMETRY, single ? "/actuator/height" : "/actuator/height/base",
-                     "%s take %.6g mm: a height of %.6g mm is too small", layers, to_mm(need),
-                     to_mm(s->height_base));
+                     "a height of %.6g mm is too small for %s\nat least %.6g mm",
+                     to_mm(s->height_base), layers, to_mm(need));
   }
   if (s->height_tip < need) {
     return error_set(error, STATUS_GEOMETRY, "/actuator/height/tip",
-                     "%s take %.6g mm: a height of %.6g mm at the tip is too small", layers,
-                     to_mm(need), to_mm(s->height_tip));
+                     "a height of %.6g mm at the tip is too small for %s\nat least %.6g mm",
+                     to_mm(s->height_tip), layers, to_mm(need));
   }
   return STATUS_OK;
 }
@@ -131,14 +130,14 @@ static enum status check_gaps(const struct pneunet_spec *s, struct error *error)
   double height = fmin(s->height_base, s->height_tip) - s->bottom_layer;
   if (s->gap_root > s->chamber_gap) {
     return error_set(error, STATUS_GEOMETRY, "/actuator/gap_root",
-                     "the gaps would be %.6g mm wide at the root but only %.6g mm at the top "
-                     "(chamber_gap), which is the most that the root can have",
+                     "the gaps would be %.6g mm wide at the root, more than at the top\nat most "
+                     "chamber_gap, %.6g mm",
                      to_mm(s->gap_root), to_mm(s->chamber_gap));
   }
   if (s->gap_round > height) {
     return error_set(error, STATUS_GEOMETRY, "/actuator/gap_round",
-                     "the rounded bottom of a U of %.6g mm is higher than the gaps, which are "
-                     "%.6g mm high",
+                     "the rounded bottom of a U of %.6g mm is higher than the gaps\nat most their "
+                     "height, %.6g mm",
                      to_mm(s->gap_round), to_mm(height));
   }
   return STATUS_OK;
@@ -161,7 +160,7 @@ static enum status check_vertical_taper(const struct pneunet_spec *s, struct err
   return error_set(error, STATUS_GEOMETRY,
                    larger == top ? "/actuator/taper/top" : "/actuator/taper/bottom",
                    "tapers of top and bottom leave %.6g mm of height at the tip, but walls and a "
-                   "cavity of 0.1 mm need %.6g mm: the limit is %.4f deg%s",
+                   "cavity of 0.1 mm need %.6g mm\nthe limit is %.4f deg%s",
                    to_mm(s->height_tip - s->length * (top + bottom)), to_mm(tip_need(s)),
                    to_deg(atan(both ? room - smaller : room)), both ? " beside the other one" : "");
 }

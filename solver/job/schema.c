@@ -1,6 +1,5 @@
 #include "solver/job/schema_walk.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -105,39 +104,6 @@ void schema_destroy(struct schema *schema) {
   free(schema);
 }
 
-/* ---- messages --------------------------------------------------------------------------- */
-
-enum status schema_refuse(struct walk *walk, const char *format, ...) {
-  if (!walk->error) {
-    return STATUS_INVALID;
-  }
-  char sentence[sizeof walk->error->message];
-  va_list arguments;
-  va_start(arguments, format);
-  vsnprintf(sentence, sizeof sentence, format, arguments);
-  va_end(arguments);
-  char *example = walk->example ? json_dumps(walk->example, JSON_ENCODE_ANY | JSON_COMPACT) : NULL;
-  bool room = example && strlen(example) + strlen(sentence) + 20 < sizeof sentence;
-  error_set(walk->error, STATUS_INVALID, walk->pointer.text, "%s%s%s", sentence,
-            room ? "; for example " : "", room ? example : "");
-  free(example);
-  return STATUS_INVALID;
-}
-
-const char *schema_list_words(char *out, size_t size, const char *const *words, size_t count) {
-  size_t length = 0;
-  out[0] = '\0';
-  for (size_t i = 0; i < count; i++) {
-    const char *join = i == 0 ? "" : i + 1 == count ? " or " : ", ";
-    if (length + strlen(join) + strlen(words[i]) + 8 > size) {
-      snprintf(out + length, size - length, ", ...");
-      break;
-    }
-    length += (size_t)snprintf(out + length, size - length, "%s\"%s\"", join, words[i]);
-  }
-  return out;
-}
-
 /* ---- choosing a branch ------------------------------------------------------------------ */
 
 const json_t *schema_resolve(const struct schema *schema, const json_t *node) {
@@ -156,6 +122,11 @@ const json_t *schema_resolve(const struct schema *schema, const json_t *node) {
     }
   }
   return NULL;
+}
+
+const json_t *schema_rule(const struct schema *schema, const json_t *node, const char *keyword) {
+  const json_t *own = json_object_get(node, keyword);
+  return own ? own : json_object_get(schema_resolve(schema, node), keyword);
 }
 
 /* The type that a branch accepts: its `type`, or that of its `const`. */
@@ -197,40 +168,26 @@ static const json_t *choose_by_property(struct walk *walk, const json_t *const *
     }
     words[i] = fixed && json_is_string(fixed) ? json_string_value(fixed) : "?";
   }
-  char list[200], quoted[60];
+  char list[SCHEMA_ALLOWED], found[SCHEMA_PHRASE], problem[SCHEMA_PHRASE];
   schema_list_words(list, sizeof list, words, count);
-  walk->example = NULL;
   if (!given) {
-    schema_refuse(walk, "\"%s\" is missing: it must be %s", key, list);
+    snprintf(found, sizeof found, "the key \"%s\"", key);
+    schema_refuse(walk, &(struct refusal){.found = found,
+                                          .problem = "is missing",
+                                          .allowed = list,
+                                          .example = json_pack("{s:s}", key, words[0])});
     return NULL;
   }
+  const char *word = json_string_value(given);
+  const char *near = word ? text_nearest(word, words, count) : NULL;
+  snprintf(problem, sizeof problem, "is not a known %s", key);
   size_t mark = json_pointer_key(&walk->pointer, key);
-  if (!json_is_string(given)) {
-    schema_refuse(walk, "\"%s\" must be %s, not %s", key, list, json_type_phrase(given));
-  } else {
-    const char *text = json_string_value(given);
-    const char *near = text_nearest(text, words, count);
-    schema_refuse(walk, "%s is not a known %s%s%s%s: it must be %s",
-                  text_quote(quoted, sizeof quoted, text), key, near ? " (did you mean \"" : "",
-                  near ? near : "", near ? "\"?)" : "", list);
-  }
+  schema_refuse(walk, &(struct refusal){.found = schema_value_phrase(found, given),
+                                        .problem = problem,
+                                        .allowed = list,
+                                        .nearest = near,
+                                        .example = json_string(near ? near : words[0])});
   json_pointer_pop(&walk->pointer, mark);
-  return NULL;
-}
-
-static const json_t *refuse_type(struct walk *walk, const json_t *branches, const json_t *value) {
-  char list[120] = "";
-  size_t length = 0, index;
-  json_t *branch;
-  json_array_foreach(branches, index, branch) {
-    const char *type =
-        json_string_value(json_object_get(schema_resolve(walk->schema, branch), "type"));
-    if (type && !strstr(list, type) && length + strlen(type) + 8 < sizeof list) {
-      length += (size_t)snprintf(list + length, sizeof list - length, "%s%s",
-                                 length > 0 ? " or " : "", type);
-    }
-  }
-  schema_refuse(walk, "must be of type %s, not %s", list, json_type_phrase(value));
   return NULL;
 }
 
@@ -253,7 +210,10 @@ const json_t *schema_choose_branch(struct walk *walk, const json_t *branches, co
     return equal ? candidates[0] : quantity;
   }
   if (count == 0) {
-    return refuse_type(walk, branches, value);
+    char found[SCHEMA_PHRASE];
+    schema_refuse(walk, &(struct refusal){.found = schema_value_phrase(found, value),
+                                          .problem = "is not possible here"});
+    return NULL;
   }
   const char *key = json_is_object(value) ? discriminator(candidates[0]) : NULL;
   return key ? choose_by_property(walk, candidates, count, key, value) : candidates[0];
@@ -261,14 +221,10 @@ const json_t *schema_choose_branch(struct walk *walk, const json_t *branches, co
 
 /* ---- walking ---------------------------------------------------------------------------- */
 
-enum status schema_check_node(struct walk *walk, const json_t *node, const json_t *value) {
-  const json_t *examples = json_object_get(node, "examples");
-  if (!walk->example && examples) {
-    walk->example = json_array_get(examples, 0);
-  }
+static enum status check_keywords(struct walk *walk, const json_t *node, const json_t *value) {
   const json_t *target = schema_resolve(walk->schema, node);
   if (target != node) {
-    enum status status = schema_check_node(walk, target, value);
+    enum status status = check_keywords(walk, target, value);
     if (status != STATUS_OK) {
       return status;
     }
@@ -287,6 +243,14 @@ enum status schema_check_node(struct walk *walk, const json_t *node, const json_
     }
   }
   return STATUS_OK;
+}
+
+enum status schema_check_node(struct walk *walk, const json_t *node, const json_t *value) {
+  const json_t *outer = walk->node;
+  walk->node = node;
+  enum status status = check_keywords(walk, node, value);
+  walk->node = outer;
+  return status;
 }
 
 enum status schema_check(const struct schema *schema, const json_t *value, struct error *error) {
@@ -356,6 +320,6 @@ static enum status fill_node(struct walk *walk, const json_t *node, json_t *valu
 }
 
 enum status schema_fill(const struct schema *schema, json_t *value, struct error *error) {
-  struct walk walk = {.schema = schema, .error = error};
+  struct walk walk = {.schema = schema, .node = schema->root, .error = error};
   return fill_node(&walk, schema->root, value);
 }

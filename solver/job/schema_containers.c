@@ -1,19 +1,17 @@
 /* Keywords about objects, arrays and alternatives. */
 #include "solver/job/schema_walk.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "solver/base/text.h"
 
 enum { KEYS_MAX = 64 };
 
-/* Checks a member or item; the example in hand belongs to its container and is set aside. */
+/* Checks a member or item. */
 static enum status check_child(struct walk *walk, const json_t *node, const json_t *value,
                                size_t mark) {
-  const json_t *example = walk->example;
-  walk->example = NULL;
   enum status status = schema_check_node(walk, node, value);
-  walk->example = example;
   json_pointer_pop(&walk->pointer, mark);
   return status;
 }
@@ -22,29 +20,44 @@ static enum status check_one_of(struct walk *walk, const json_t *node, const jso
                                 const json_t *value) {
   (void)node;
   const json_t *branch = schema_choose_branch(walk, rule, value);
-  return branch ? schema_check_node(walk, branch, value) : STATUS_INVALID;
+  if (!branch) {
+    return walk->error ? walk->error->status : STATUS_INVALID;
+  }
+  return schema_check_node(walk, branch, value);
 }
 
-static enum status refuse_key(struct walk *walk, const json_t *properties, const char *key) {
-  const char *words[KEYS_MAX];
+/* A member of an object as an example: one with the key `key`. */
+static json_t *member_example(const struct walk *walk, const json_t *property, const char *key) {
+  json_t *value = schema_example(walk->schema, property);
+  return value ? json_pack("{s:o}", key, value) : NULL;
+}
+
+static enum status refuse_key(struct walk *walk, const json_t *properties, const json_t *value,
+                              const char *key) {
+  const char *words[KEYS_MAX], *known, *absent = NULL;
   size_t count = 0;
-  const char *known;
   json_t *property;
   json_object_foreach((json_t *)properties, known, property) {
+    absent = absent || json_object_get(value, known) ? absent : known;
     if (count < KEYS_MAX) {
       words[count++] = known;
     }
   }
-  char list[240], quoted[60];
+  char list[SCHEMA_ALLOWED], quoted[60], found[SCHEMA_PHRASE];
   schema_list_words(list, sizeof list, words, count);
   const char *near = text_nearest(key, words, count);
-  walk->example = NULL;
+  const char *shown = near ? near : absent ? absent : words[0];
+  snprintf(found, sizeof found, "the key %s", text_quote(quoted, sizeof quoted, key));
+  json_t *example = member_example(walk, json_object_get(properties, shown), shown);
   size_t mark = json_pointer_key(&walk->pointer, key);
-  schema_refuse(walk, "the key %s is not known here%s%s%s; known are %s",
-                text_quote(quoted, sizeof quoted, key), near ? ", did you mean \"" : "",
-                near ? near : "", near ? "\"?" : "", list);
+  enum status status = schema_refuse(walk, &(struct refusal){.found = found,
+                                                             .problem = "is not known here",
+                                                             .verb = "known are",
+                                                             .allowed = list,
+                                                             .nearest = near,
+                                                             .example = example});
   json_pointer_pop(&walk->pointer, mark);
-  return STATUS_INVALID;
+  return status;
 }
 
 /* Comes before `required`, so that a misspelt key is not reported as a missing one. */
@@ -58,7 +71,7 @@ static enum status check_additional(struct walk *walk, const json_t *node, const
       continue;
     }
     if (json_is_false(rule)) {
-      return refuse_key(walk, properties, key);
+      return refuse_key(walk, properties, value, key);
     }
     enum status status = check_child(walk, rule, member, json_pointer_key(&walk->pointer, key));
     if (status != STATUS_OK) {
@@ -86,6 +99,12 @@ static enum status check_property_names(struct walk *walk, const json_t *node, c
   return STATUS_OK;
 }
 
+static enum status refuse_size(struct walk *walk, const json_t *value, const char *problem) {
+  char found[SCHEMA_PHRASE];
+  return schema_refuse(
+      walk, &(struct refusal){.found = schema_value_phrase(found, value), .problem = problem});
+}
+
 static enum status check_max_properties(struct walk *walk, const json_t *node, const json_t *rule,
                                         const json_t *value) {
   (void)node;
@@ -93,9 +112,7 @@ static enum status check_max_properties(struct walk *walk, const json_t *node, c
   if (json_object_size(value) <= most) {
     return STATUS_OK;
   }
-  walk->example = NULL;
-  return schema_refuse(walk, "has %zu members; at most %zu are allowed", json_object_size(value),
-                       most);
+  return refuse_size(walk, value, "is too large");
 }
 
 static enum status check_required(struct walk *walk, const json_t *node, const json_t *rule,
@@ -108,12 +125,13 @@ static enum status check_required(struct walk *walk, const json_t *node, const j
       continue;
     }
     const json_t *property = json_object_get(json_object_get(node, "properties"), key);
-    const json_t *examples = json_object_get(property, "examples");
-    if (!examples) {
-      examples = json_object_get(schema_resolve(walk->schema, property), "examples");
-    }
-    walk->example = examples ? json_array_get(examples, 0) : json_object_get(property, "const");
-    return schema_refuse(walk, "the key \"%s\" is missing", key);
+    char found[SCHEMA_PHRASE], allowed[SCHEMA_ALLOWED];
+    snprintf(found, sizeof found, "the key \"%s\"", key);
+    return schema_refuse(
+        walk, &(struct refusal){.found = found,
+                                .problem = "is missing",
+                                .allowed = schema_describe(walk->schema, property, allowed),
+                                .example = member_example(walk, property, key)});
   }
   return STATUS_OK;
 }
@@ -157,8 +175,7 @@ static enum status check_min_items(struct walk *walk, const json_t *node, const 
   if (!json_is_array(value) || json_array_size(value) >= least) {
     return STATUS_OK;
   }
-  return schema_refuse(walk, "must have at least %zu item%s, not %zu", least, least == 1 ? "" : "s",
-                       json_array_size(value));
+  return refuse_size(walk, value, "is too short");
 }
 
 static enum status check_max_items(struct walk *walk, const json_t *node, const json_t *rule,
@@ -168,8 +185,7 @@ static enum status check_max_items(struct walk *walk, const json_t *node, const 
   if (json_array_size(value) <= most) {
     return STATUS_OK;
   }
-  return schema_refuse(walk, "has %zu items; at most %zu are allowed", json_array_size(value),
-                       most);
+  return refuse_size(walk, value, "is too long");
 }
 
 const struct schema_keyword schema_container_keywords[] = {

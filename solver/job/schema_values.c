@@ -33,57 +33,89 @@ bool schema_has_type(const json_t *value, const char *type) {
 
 /* ---- quantities ------------------------------------------------------------------------- */
 
+/* The value and what is wrong with it; the rest follows from the schema. */
+static enum status refuse(struct walk *walk, const json_t *value, const char *problem) {
+  char found[SCHEMA_PHRASE];
+  return schema_refuse(
+      walk, &(struct refusal){.found = schema_value_phrase(found, value), .problem = problem});
+}
+
 static enum status check_bound(struct walk *walk, const json_t *node, const char *keyword,
-                               const char *unit, double si, const char *given) {
+                               const char *unit, double si, const json_t *value) {
   const char *limit = json_string_value(json_object_get(node, keyword));
+  double bound = 0.0;
   if (!limit) {
     return STATUS_OK;
   }
-  double bound = 0.0;
-  if (units_read(walk->schema->units, limit, unit, &bound, walk->error) != STATUS_OK) {
-    return STATUS_INTERNAL;
+  enum status status = units_read(walk->schema->units, limit, unit, &bound, walk->error);
+  if (status != STATUS_OK) {
+    return status == STATUS_NO_MEMORY ? status : STATUS_INTERNAL;
   }
   bool exclusive = strstr(keyword, "exclusive") != NULL;
   bool lower = strstr(keyword, "inimum") != NULL;
-  if (lower ? (exclusive ? si > bound : si >= bound) : si <= bound) {
-    return STATUS_OK;
+  return (lower ? (exclusive ? si > bound : si >= bound) : si <= bound)
+             ? STATUS_OK
+             : refuse(walk, value, lower ? "is too small" : "is too large");
+}
+
+/* Whether a quantity reads well and is within the bounds; fills the error otherwise. */
+static enum status check_quantity(struct walk *walk, const json_t *node, const char *unit,
+                                  const json_t *value) {
+  static const char *const bounds[] = {"x-minimum", "x-exclusiveMinimum", "x-maximum"};
+  double si = 0.0;
+  enum status status =
+      units_read(walk->schema->units, json_string_value(value), unit, &si, walk->error);
+  for (size_t i = 0; i < 3 && status == STATUS_OK; i++) {
+    status = check_bound(walk, node, bounds[i], unit, si, value);
   }
-  char quoted[80];
-  return schema_refuse(walk, "%s is out of range: it must be %s %s",
-                       text_quote(quoted, sizeof quoted, given),
-                       !lower      ? "at most"
-                       : exclusive ? "more than"
-                                   : "at least",
-                       limit);
+  return status;
+}
+
+/* The quantity in `text`, a new reference, where the node takes it, otherwise NULL. */
+static json_t *right_quantity(const struct walk *walk, const json_t *node, const char *unit,
+                              const char *text) {
+  struct walk quiet = {.schema = walk->schema, .node = node};
+  json_t *quantity = json_string(text);
+  if (quantity && check_quantity(&quiet, node, unit, quantity) != STATUS_OK) {
+    json_decref(quantity);
+    quantity = NULL;
+  }
+  return quantity;
+}
+
+/* units_read has filled the error with a sentence about the text, and an example. */
+static enum status refuse_text(struct walk *walk, const json_t *node, const char *unit) {
+  if (!walk->error) {
+    return STATUS_INVALID;
+  }
+  const struct error read = *walk->error;
+  json_t *example = json_loads(read.example, JSON_DECODE_ANY, NULL);
+  json_t *right = right_quantity(walk, node, unit, json_string_value(example));
+  json_decref(example);
+  return schema_refuse(walk,
+                       &(struct refusal){.found = read.found, .problem = "", .example = right});
 }
 
 static enum status check_unit(struct walk *walk, const json_t *node, const json_t *rule,
                               const json_t *value) {
   const char *unit = json_string_value(rule);
   if (json_is_number(value)) {
-    char number[32];
-    snprintf(number, sizeof number, "%.12g", json_number_value(value));
-    walk->example = NULL;
-    return schema_refuse(walk, "the number %s has no unit: write \"%s %s\"", number, number, unit);
+    char found[SCHEMA_PHRASE], text[SCHEMA_PHRASE];
+    snprintf(text, sizeof text, "%.12g %s", json_number_value(value), unit);
+    return schema_refuse(walk,
+                         &(struct refusal){.found = schema_value_phrase(found, value),
+                                           .problem = "has no unit",
+                                           .example = right_quantity(walk, node, unit, text)});
   }
   if (!json_is_string(value)) {
-    return schema_refuse(walk, "must be a quantity with its unit in a string, not %s",
-                         json_type_phrase(value));
+    return refuse(walk, value, "is not possible here");
   }
-  double si = 0.0;
-  const char *given = json_string_value(value);
-  enum status status = units_read(walk->schema->units, given, unit, &si, walk->error);
-  if (status != STATUS_OK) {
-    if (walk->error) {
-      memcpy(walk->error->pointer, walk->pointer.text, sizeof walk->pointer.text);
-    }
-    return status;
-  }
-  static const char *const bounds[] = {"x-minimum", "x-exclusiveMinimum", "x-maximum"};
-  for (size_t i = 0; i < 3 && status == STATUS_OK; i++) {
-    status = check_bound(walk, node, bounds[i], unit, si, given);
-  }
-  return status;
+  double ignored;
+  enum status status =
+      units_read(walk->schema->units, json_string_value(value), unit, &ignored, walk->error);
+  return status == STATUS_INVALID ? refuse_text(walk, node, unit)
+         : status == STATUS_OK    ? check_quantity(walk, node, unit, value)
+                                  : status;
 }
 
 /* ---- types and fixed values ------------------------------------------------------------- */
@@ -92,19 +124,10 @@ static enum status check_type(struct walk *walk, const json_t *node, const json_
                               const json_t *value) {
   (void)node;
   const char *type = json_string_value(rule);
-  if (schema_has_type(value, type)) {
-    return STATUS_OK;
-  }
-  if (strcmp(type, "integer") == 0 && json_is_number(value)) {
-    return schema_refuse(walk, "must be a whole number");
-  }
-  const char *phrase = strcmp(type, "boolean") == 0   ? "true or false"
-                       : strcmp(type, "integer") == 0 ? "a whole number"
-                       : strchr("ao", type[0])        ? "an "
-                                                      : "a ";
-  bool complete = strcmp(type, "boolean") == 0 || strcmp(type, "integer") == 0;
-  return schema_refuse(walk, "must be %s%s, not %s", phrase, complete ? "" : type,
-                       json_type_phrase(value));
+  bool fraction = strcmp(type, "integer") == 0 && json_is_number(value);
+  return schema_has_type(value, type)
+             ? STATUS_OK
+             : refuse(walk, value, fraction ? "is not whole" : "is not possible here");
 }
 
 static bool is_equal(const json_t *a, const json_t *b) {
@@ -115,11 +138,7 @@ static bool is_equal(const json_t *a, const json_t *b) {
 static enum status check_const(struct walk *walk, const json_t *node, const json_t *rule,
                                const json_t *value) {
   (void)node;
-  if (is_equal(rule, value)) {
-    return STATUS_OK;
-  }
-  walk->example = rule;
-  return schema_refuse(walk, "has a value that is not possible here");
+  return is_equal(rule, value) ? STATUS_OK : refuse(walk, value, "is not possible here");
 }
 
 static enum status check_enum(struct walk *walk, const json_t *node, const json_t *rule,
@@ -136,27 +155,24 @@ static enum status check_enum(struct walk *walk, const json_t *node, const json_
       words[count++] = json_string_value(option);
     }
   }
-  char list[280], quoted[60];
-  schema_list_words(list, sizeof list, words, count);
-  walk->example = NULL;
   if (!json_is_string(value)) {
-    return schema_refuse(walk, "must be %s, not %s", list, json_type_phrase(value));
+    return refuse(walk, value, "is not possible here");
   }
+  char found[SCHEMA_PHRASE];
   const char *near = text_nearest(json_string_value(value), words, count);
-  return schema_refuse(walk, "%s is not known%s%s%s: it must be %s",
-                       text_quote(quoted, sizeof quoted, json_string_value(value)),
-                       near ? " (did you mean \"" : "", near ? near : "", near ? "\"?)" : "", list);
+  return schema_refuse(walk, &(struct refusal){.found = schema_value_phrase(found, value),
+                                               .problem = "is not known",
+                                               .nearest = near,
+                                               .example = near ? json_string(near) : NULL});
 }
 
 /* ---- numbers and strings ---------------------------------------------------------------- */
 
 static enum status check_number(struct walk *walk, const json_t *rule, const json_t *value,
-                                bool (*fits)(double value, double bound), const char *phrase) {
-  if (!json_is_number(value) || fits(json_number_value(value), json_number_value(rule))) {
-    return STATUS_OK;
-  }
-  return schema_refuse(walk, "%.12g is out of range: it must be %s %.12g", json_number_value(value),
-                       phrase, json_number_value(rule));
+                                bool (*fits)(double value, double bound), const char *problem) {
+  return !json_is_number(value) || fits(json_number_value(value), json_number_value(rule))
+             ? STATUS_OK
+             : refuse(walk, value, problem);
 }
 
 static bool is_at_least(double value, double bound) {
@@ -178,25 +194,25 @@ static bool is_less(double value, double bound) {
 static enum status check_minimum(struct walk *walk, const json_t *node, const json_t *rule,
                                  const json_t *value) {
   (void)node;
-  return check_number(walk, rule, value, is_at_least, "at least");
+  return check_number(walk, rule, value, is_at_least, "is too small");
 }
 
 static enum status check_maximum(struct walk *walk, const json_t *node, const json_t *rule,
                                  const json_t *value) {
   (void)node;
-  return check_number(walk, rule, value, is_at_most, "at most");
+  return check_number(walk, rule, value, is_at_most, "is too large");
 }
 
 static enum status check_exclusive_minimum(struct walk *walk, const json_t *node,
                                            const json_t *rule, const json_t *value) {
   (void)node;
-  return check_number(walk, rule, value, is_more, "more than");
+  return check_number(walk, rule, value, is_more, "is too small");
 }
 
 static enum status check_exclusive_maximum(struct walk *walk, const json_t *node,
                                            const json_t *rule, const json_t *value) {
   (void)node;
-  return check_number(walk, rule, value, is_less, "less than");
+  return check_number(walk, rule, value, is_less, "is too large");
 }
 
 static json_int_t count_characters(const char *text) {
@@ -207,25 +223,29 @@ static json_int_t count_characters(const char *text) {
   return count;
 }
 
+static enum status refuse_length(struct walk *walk, const json_t *value, const char *problem) {
+  char found[SCHEMA_PHRASE];
+  snprintf(found, sizeof found, "a string of %lld characters",
+           (long long)count_characters(json_string_value(value)));
+  return schema_refuse(walk, &(struct refusal){.found = found, .problem = problem});
+}
+
 static enum status check_min_length(struct walk *walk, const json_t *node, const json_t *rule,
                                     const json_t *value) {
   (void)node;
-  json_int_t least = json_integer_value(rule);
-  if (!json_is_string(value) || count_characters(json_string_value(value)) >= least) {
-    return STATUS_OK;
-  }
-  return schema_refuse(walk, "must have at least %lld characters", (long long)least);
+  return !json_is_string(value) ||
+                 count_characters(json_string_value(value)) >= json_integer_value(rule)
+             ? STATUS_OK
+             : refuse_length(walk, value, "is too short");
 }
 
 static enum status check_max_length(struct walk *walk, const json_t *node, const json_t *rule,
                                     const json_t *value) {
   (void)node;
-  json_int_t most = json_integer_value(rule);
-  if (!json_is_string(value) || count_characters(json_string_value(value)) <= most) {
-    return STATUS_OK;
-  }
-  return schema_refuse(walk, "has %lld characters; at most %lld are allowed",
-                       (long long)count_characters(json_string_value(value)), (long long)most);
+  return !json_is_string(value) ||
+                 count_characters(json_string_value(value)) <= json_integer_value(rule)
+             ? STATUS_OK
+             : refuse_length(walk, value, "is too long");
 }
 
 const struct schema_keyword schema_value_keywords[] = {

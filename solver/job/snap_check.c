@@ -44,9 +44,8 @@ static enum status check_walls(const struct snap_spec *s, struct error *error) {
   const struct snap_given *g = &s->given;
   if (g->snapping_angle >= g->supporting_angle) {
     return error_set(error, STATUS_GEOMETRY, "/actuator/snapping_angle",
-                     "the shells that snap have a base angle of %.6g deg, which must be smaller "
-                     "than the %.6g deg of the supporting ones; for example \"40 deg\" and "
-                     "\"55 deg\"",
+                     "the shells that snap have a base angle of %.6g deg\na smaller angle than the "
+                     "%.6g deg of the supporting ones; for example \"40 deg\" and \"55 deg\"",
                      to_deg(g->snapping_angle), to_deg(g->supporting_angle));
   }
   double thinnest = fmin(s->wall, s->hinge_wall), thickest = fmax(s->wall, s->hinge_wall);
@@ -56,7 +55,7 @@ static enum status check_walls(const struct snap_spec *s, struct error *error) {
       return error_set(error, STATUS_GEOMETRY,
                        s->hinge_wall < s->wall ? "/actuator/hinge_wall" : "/actuator/wall",
                        "PET of %.6g mm and 0.05 mm of silicone on each side of it do not fit into "
-                       "a wall of %.6g mm: it must be at least %.6g mm thick",
+                       "a wall of %.6g mm\nit must be at least %.6g mm thick",
                        to_mm(p->pet_thickness), to_mm(thinnest),
                        to_mm(p->pet_thickness + 2.0 * silicone_minimum));
     }
@@ -65,7 +64,7 @@ static enum status check_walls(const struct snap_spec *s, struct error *error) {
     if (s->hinge_length < least) {
       return error_set(error, STATUS_GEOMETRY, "/actuator/hinge_length",
                        "a hinge of %.6g mm that turns by %.6g deg is too short for a wall of %.6g "
-                       "mm, whose inner face it would fold: at least \"%.3f mm\"",
+                       "mm, whose inner face it would fold\nat least \"%.3f mm\"",
                        to_mm(s->hinge_length), to_deg(turn), to_mm(thickest),
                        ceil(to_mm(least) * 1e3) / 1e3);
     }
@@ -89,7 +88,7 @@ static enum status check_bore(const struct snap_spec *s, double radius, double i
                      to_mm(s->given.outer_diameter), to_mm(s->hinge_length), to_mm(2.0 * half));
   }
   return error_set(error, STATUS_GEOMETRY, "/actuator/snapping_slant",
-                   "shells of %.6g mm at %.6g deg reach across the axis: their slant must be below "
+                   "shells of %.6g mm at %.6g deg reach across the axis\ntheir slant must be below "
                    "%.6g mm in a body of %.6g mm",
                    to_mm(p->snapping_slant), to_deg(p->snapping_angle), to_mm(most),
                    to_mm(s->given.outer_diameter));
@@ -107,13 +106,13 @@ static enum status support(const struct snap_spec *s, int k, double *slant, stru
   *slant = isnan(g->supporting_slant) ? closing : g->supporting_slant;
   if (!(*slant > 0.0)) {
     return error_set(error, STATUS_GEOMETRY, "/actuator/snapping_slant",
-                     "shells of %.6g mm that snap leave no supporting shells between the hinges: "
-                     "they must be longer, for example \"%.3g mm\"",
+                     "shells of %.6g mm that snap leave no supporting shells between the hinges\na "
+                     "longer slant\n\"%.3g mm\"",
                      to_mm(g->snapping_slant), to_mm(g->snapping_slant + s->hinge_length));
   }
   if (s->ends == SNAP_PERIODIC && fabs(*slant - closing) > rounding * closing) {
     return error_set(error, STATUS_GEOMETRY, "/actuator/supporting_slant",
-                     "an endless row needs equally wide crests: supporting shells of %.6f mm, not "
+                     "an endless row needs equally wide crests\nsupporting shells of %.6f mm, not "
                      "%.6g mm; leave the key out, or give \"ends\": \"plates\"",
                      to_mm(closing), to_mm(*slant));
   }
@@ -127,10 +126,10 @@ static enum status check_slant(const struct snap_spec *s, const char *pointer, d
   if (slant >= least) {
     return STATUS_OK;
   }
-  return error_set(error, STATUS_GEOMETRY, pointer,
-                   "a straight part of %.6g mm is too short for a wall of %.6g mm: at least %.6g "
-                   "mm",
-                   to_mm(slant), to_mm(s->wall), to_mm(least));
+  return error_set(
+      error, STATUS_GEOMETRY, pointer,
+      "a straight part of %.6g mm is too short for a wall of %.6g mm\nat least %.6g mm",
+      to_mm(slant), to_mm(s->wall), to_mm(least));
 }
 
 static enum status derive_supports(struct snap_spec *s, struct error *error) {
@@ -164,8 +163,8 @@ static enum status derive_supports(struct snap_spec *s, struct error *error) {
   }
   if (status == STATUS_OK && !isnan(pet) && pet > shortest) {
     return error_set(error, STATUS_GEOMETRY, "/actuator/supporting_pet",
-                     "%.6g mm of PET do not fit into supporting shells of %.6g mm", to_mm(pet),
-                     to_mm(shortest));
+                     "%.6g mm of PET do not fit into the supporting shells\nat most their %.6g mm",
+                     to_mm(pet), to_mm(shortest));
   }
   s->supporting_pet = isnan(pet) ? INFINITY : pet;
   return status;
@@ -200,7 +199,7 @@ enum status snap_derive(struct snap_spec *spec, struct error *error) {
       bool order = g->snapping_angle < g->supporting_angle;
       return order ? error_set(error, STATUS_GEOMETRY, pointer,
                                "a factor of %.6g makes the snapping shell as steep as the "
-                               "supporting one: below %.6g",
+                               "supporting one\nbelow %.6g",
                                g->angle_factor[k], g->supporting_angle / g->snapping_angle)
                    : check_walls(spec, error);
     }

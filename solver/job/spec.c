@@ -103,8 +103,9 @@ static enum status read_planes(const struct reader *reader, const json_t *planes
       json_pointer_key(&pointer, "planes");
       json_pointer_index(&pointer, index);
       json_pointer_key(&pointer, "normal");
-      return error_set(reader->error, STATUS_INVALID, pointer.text,
-                       "the normal of a plane needs a length; for example [0, 0, 1] for a floor");
+      return error_set(
+          reader->error, STATUS_INVALID, pointer.text,
+          "the normal of a plane has no length\nat least one number that is not 0\n[0, 0, 1]");
     }
   }
   return STATUS_OK;
@@ -135,15 +136,16 @@ static enum status read_range(const struct reader *reader, const json_t *metrics
   *from = reader_quantity(reader, json_array_get(range, 0), "kPa");
   *to = reader_quantity(reader, json_array_get(range, 1), "kPa");
   if (*from >= *to) {
-    return error_set(reader->error, STATUS_INVALID, pointer.text,
-                     "the range must rise: %.6g kPa is not below %.6g kPa; for example "
-                     "[\"0 kPa\", \"%.6g kPa\"]",
-                     *from / 1e3, *to / 1e3, pressure_to / 1e3);
+    return error_set(
+        reader->error, STATUS_INVALID, pointer.text,
+        "%.6g kPa is not below %.6g kPa\na range that rises\n[\"0 kPa\", \"%.6g kPa\"]",
+        *from / 1e3, *to / 1e3, pressure_to / 1e3);
   }
   if (*to > pressure_to * (1.0 + 1e-9)) {
-    return error_set(reader->error, STATUS_INVALID, pointer.text,
-                     "the range ends at %.6g kPa, beyond the load, which ends at %.6g kPa",
-                     *to / 1e3, pressure_to / 1e3);
+    return error_set(
+        reader->error, STATUS_INVALID, pointer.text,
+        "the range ends at %.6g kPa, beyond the load\nat most the end of the load, %.6g kPa",
+        *to / 1e3, pressure_to / 1e3);
   }
   return STATUS_OK;
 }

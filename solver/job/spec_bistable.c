@@ -51,7 +51,7 @@ static enum status read_closed_form(const struct reader *reader, const json_t *v
       !(law->per > 0.0)) {
     snprintf(where, sizeof where, "%.150s/per", pointer);
     return error_set(reader->error, STATUS_INVALID, per ? where : pointer,
-                     "%s is no unit of the elongation in the powers; for example \"per\": \"mm\"",
+                     "%s is no unit of the elongation in the powers\na unit of length\n\"mm\"",
                      text_quote(quoted, sizeof quoted, per ? per : ""));
   }
   law->from = range ? reader_quantity(reader, json_array_get(range, 0), "mm") : -5.0 * law->per;
@@ -59,7 +59,7 @@ static enum status read_closed_form(const struct reader *reader, const json_t *v
   if (!(law->from < law->to)) {
     snprintf(where, sizeof where, "%.150s/range", pointer);
     return error_set(reader->error, STATUS_INVALID, where,
-                     "the range must rise; for example [\"-2 mm\", \"14 mm\"]");
+                     "the range does not rise\na range that rises\n[\"-2 mm\", \"14 mm\"]");
   }
   return STATUS_OK;
 }
@@ -77,17 +77,17 @@ static enum status read_law(const struct reader *reader, const char *name, const
   reader_copy(law->pointer, sizeof law->pointer, pointer.text);
   law->is_table = table != NULL;
   if (ways != 1) {
-    return error_set(
-        reader->error, STATUS_INVALID, pointer.text,
-        "a law has one of \"table\", \"snap\" and \"coefficients\"; for example { "
-        "\"per\": \"mm\", \"coefficients\": [\"0 N\", \"5 N\"], \"area\": \"8 cm2\" }");
+    return error_set(reader->error, STATUS_INVALID, pointer.text,
+                     "the law has none or several of its forms\none of \"table\", \"snap\" and "
+                     "\"coefficients\"\n{ \"per\": \"mm\", \"coefficients\": [\"0 N\", \"5 N\"], "
+                     "\"area\": \"8 cm2\" }");
   }
   for (size_t i = 0; (table || snap) && i < sizeof closed / sizeof *closed; i++) {
     if (json_object_get(value, closed[i])) {
       json_pointer_key(&pointer, closed[i]);
       return error_set(
           reader->error, STATUS_INVALID, pointer.text,
-          "\"%s\" belongs to a law in closed form: a table or a snap job says it itself",
+          "\"%s\" belongs to a law in closed form\na table or a snap job says it itself",
           closed[i]);
     }
   }
@@ -109,11 +109,11 @@ static enum status read_laws(const struct reader *reader, const json_t *laws,
   json_object_foreach((json_t *)laws, name, value) {
     if (taken && strcmp(name, "snap") == 0) {
       return error_set(reader->error, STATUS_INVALID, "/laws/snap",
-                       "the law of the job's own \"snap\" has this name; for example \"thin\"");
+                       "the law of the job's own \"snap\" has this name\nanother name");
     }
     if (spec->law_count == BISTABLE_LAWS_MAX) {
       return error_set(reader->error, STATUS_INVALID, "/laws",
-                       "at most %d laws are allowed, that of a snap job included",
+                       "there are too many laws\nat most %d, that of a snap job included",
                        BISTABLE_LAWS_MAX);
     }
     status = read_law(reader, name, value, &spec->law[spec->law_count++]);
@@ -150,14 +150,14 @@ enum status reader_pneumatics(const struct reader *reader, const json_t *value, 
     if (given && !wanted) {
       snprintf(where, sizeof where, "%.150s/%s", pointer, keys[i].key);
       return error_set(reader->error, STATUS_INVALID, where,
-                       "\"%s\" belongs to the supply \"%s\", not to \"%s\"", keys[i].key,
-                       models[keys[i].model], word);
+                       "\"%s\" belongs to the supply \"%s\"\nthe keys of the supply \"%s\"",
+                       keys[i].key, models[keys[i].model], word);
     }
     if (wanted && !given && keys[i].needed) {
       return error_set(reader->error, STATUS_INVALID, pointer,
-                       "the supply \"%s\" needs \"%s\"; for example { \"supply\": \"chamber\", "
-                       "\"dead_volume\": \"20 ml\", \"conductance\": \"5 ml/s/kPa\" } or { "
-                       "\"supply\": \"lag\", \"time_constant\": \"0.1 s\" }",
+                       "the supply \"%s\" lacks a key\n\"%s\"; for example { \"supply\": "
+                       "\"chamber\", \"dead_volume\": \"20 ml\", \"conductance\": \"5 ml/s/kPa\" } "
+                       "or { \"supply\": \"lag\", \"time_constant\": \"0.1 s\" }",
                        word, keys[i].key);
     }
   }
@@ -181,7 +181,7 @@ static enum status check_vacuum(const struct reader *reader, const char *pointer
     return STATUS_OK;
   }
   return error_set(reader->error, STATUS_INVALID, pointer,
-                   "the set-point of %.6g kPa is below vacuum, %.6g kPa", 1e-3 * least,
+                   "the set-point of %.6g kPa is below vacuum\nmore than %.6g kPa", 1e-3 * least,
                    -1e-3 * actuator->supply.atmosphere);
 }
 
@@ -198,9 +198,9 @@ static enum status find_law(const struct reader *reader, const struct bistable_s
   }
   char quoted[QUOTED_MAX], known[QUOTED_MAX];
   const char *near = text_nearest(name, words, (size_t)spec->law_count);
-  return error_set(reader->error, STATUS_INVALID, pointer, "there is no law %s; %s%s",
+  return error_set(reader->error, STATUS_INVALID, pointer, "there is no law %s\n%s%s",
                    text_quote(quoted, sizeof quoted, name),
-                   near ? "near is " : "give it in \"laws\"",
+                   near ? "a name of \"laws\", such as " : "a name of \"laws\"",
                    near ? text_quote(known, sizeof known, near) : "");
 }
 
@@ -215,7 +215,7 @@ static enum status read_stops(const struct reader *reader, const json_t *stops, 
   }
   snprintf(where, sizeof where, "%.150s/stops", pointer);
   return error_set(reader->error, STATUS_INVALID, where,
-                   "the stops must leave room: \"from\" is %.6g mm and \"to\" %.6g mm",
+                   "the stops leave no room, from %.6g mm to %.6g mm\n\"from\" below \"to\"",
                    1e3 * cell->stop_from, 1e3 * cell->stop_to);
 }
 
@@ -232,7 +232,7 @@ static enum status read_cell(const struct reader *reader, const json_t *value, c
   }
   if (status == STATUS_OK && spec->cell_count + count > BISTABLE_CELLS_MAX) {
     status =
-        error_set(reader->error, STATUS_INVALID, pointer, "%d cells in all; at most %d are allowed",
+        error_set(reader->error, STATUS_INVALID, pointer, "there are %d cells in all\nat most %d",
                   spec->cell_count + count, BISTABLE_CELLS_MAX);
   }
   if (status != STATUS_OK) {
@@ -275,8 +275,8 @@ static enum status read_actuator(const struct reader *reader, const json_t *docu
   }
   if (status == STATUS_OK && !input) {
     status = error_set(reader->error, STATUS_INVALID, pointer,
-                       "the actuator has no set-point: give \"input\" here or in the job; for "
-                       "example { \"hold\": [[\"0 s\", \"40 kPa\"]] }");
+                       "the actuator has no set-point\n\"input\" here or in the job\n{\"input\": { "
+                       "\"hold\": [[\"0 s\", \"40 kPa\"]] }");
   }
   if (status == STATUS_OK) {
     status = reader_set_point(reader, input, input_at, &actuator->input);
@@ -301,7 +301,7 @@ static enum status read_actuators(const struct reader *reader, const json_t *doc
   if (!apart) {
     return error_set(reader->error, STATUS_INVALID, "/actuators",
                      "all actuators have the same offset, about which the plate would be free to "
-                     "turn; for example \"-25 mm\" and \"25 mm\"");
+                     "turn\ndifferent offsets, for example \"-25 mm\" and \"25 mm\"");
   }
   return STATUS_OK;
 }
@@ -336,12 +336,13 @@ static enum status check_whole(const struct reader *reader, const struct bistabl
     const struct supply_spec *supply = &spec->actuator[a].supply;
     if (supply->model == SUPPLY_CHAMBER && spec->initial_pressure <= -supply->atmosphere) {
       return error_set(reader->error, STATUS_INVALID, "/initial/pressure",
-                       "%.6g kPa is vacuum or below it", 1e-3 * spec->initial_pressure);
+                       "%.6g kPa is vacuum or below it\nmore pressure",
+                       1e-3 * spec->initial_pressure);
     }
   }
   if (spec->load_gap > 0.0 && spec->gravity != 0.0) {
     return error_set(reader->error, STATUS_INVALID, "/load/gap",
-                     "a load at a distance from the plate would fall: give no gap, or no gravity");
+                     "a load at a distance from the plate would fall\ngive no gap, or no gravity");
   }
   return reader_check_samples(reader, spec->end, spec->sample_rate, BISTABLE_SAMPLES_MAX);
 }

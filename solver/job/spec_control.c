@@ -32,15 +32,13 @@ static enum status check(const struct reader *reader, const struct hlpv_spec *sp
                          const struct hlpv_control *control) {
   if (!(control->lowest < control->highest)) {
     return error_set(reader->error, STATUS_INVALID, "/control/saturation",
-                     "the limits must rise: %.6g kPa is not below %.6g kPa; for example [\"-5 "
-                     "psi\", \"8 psi\"]",
+                     "%.6g kPa is not below %.6g kPa\nlimits that rise\n[\"-5 psi\", \"8 psi\"]",
                      1e-3 * control->lowest, 1e-3 * control->highest);
   }
   double samples = spec->end / control->interval;
   if (samples > CONTROL_SAMPLES_MAX) {
     return error_set(reader->error, STATUS_INVALID, "/control/rate",
-                     "%.6g Hz over %.6g s are %.0f samples of the controller; at most %d are "
-                     "allowed",
+                     "%.6g Hz over %.6g s are %.0f samples of the controller\nat most %d",
                      1.0 / control->interval, spec->end, samples, CONTROL_SAMPLES_MAX);
   }
   return STATUS_OK;

@@ -56,14 +56,15 @@ enum status reader_snap_dynamics(const struct reader *reader, const json_t *valu
   int pairs = reader_count(value, "pairs", 1);
   if (snap->law_count < 2 || snap->pair_count != 1) {
     return error_set(reader->error, STATUS_INVALID, "/dynamics",
-                     "the motion needs the law of one pair at several pressures: give "
+                     "the motion needs the law of one pair at several pressures\ngive "
                      "\"actuator\": { \"pairs\": 1 } and for example \"load\": { \"law\": [\"-20 "
                      "kPa\", \"0 kPa\", \"20 kPa\", \"40 kPa\", \"60 kPa\"] }");
   }
   if (spread * 0.5 * (pairs - 1) >= 0.9) {
-    return error_set(reader->error, STATUS_INVALID, "/dynamics/trigger_spread",
-                     "%d pairs whose triggers differ by %.3g would have one without a trigger",
-                     pairs, spread);
+    return error_set(
+        reader->error, STATUS_INVALID, "/dynamics/trigger_spread",
+        "%d pairs whose triggers differ by %.3g would have one without a trigger\na smaller spread",
+        pairs, spread);
   }
   struct bistable_spec *spec = calloc(1, sizeof *spec);
   if (!spec) {

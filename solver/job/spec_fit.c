@@ -26,7 +26,8 @@ enum status reader_column(const struct reader *reader, const json_t *columns, co
   if (units_read(reader->units, quantity, unit, &spec->si, NULL) == STATUS_OK && spec->si > 0.0) {
     return STATUS_OK;
   }
-  return error_set(reader->error, STATUS_INVALID, where, "%s is no unit of the %s; for example %s",
+  return error_set(reader->error, STATUS_INVALID, where,
+                   "%s is no unit of the %s\nits units are for example %s",
                    text_quote(quoted, sizeof quoted, given), key, example);
 }
 
@@ -48,16 +49,16 @@ static enum status read_columns(const struct reader *reader, const json_t *colum
   }
   if (given != 1) {
     return error_set(reader->error, STATUS_INVALID, "/columns",
-                     "one column of \"strain\", \"stretch\" or \"extension\" is wanted, not %zu; "
-                     "for example \"strain\": { \"name\": \"Strain\", \"unit\": \"%%\" }",
+                     "there are %zu columns of the strain\none of \"strain\", \"stretch\" and "
+                     "\"extension\"\n{\"strain\": { \"name\": \"Strain\", \"unit\": \"%%\" }}",
                      given);
   }
   fit->abscissa = abscissae[found].abscissa;
   fit->gauge = reader_member(reader, columns, "gauge", "mm", 0.0);
   if ((fit->gauge > 0.0) != (fit->abscissa == ABSCISSA_EXTENSION)) {
     return error_set(reader->error, STATUS_INVALID, "/columns",
-                     "\"extension\" and \"gauge\", the length that it refers to, go together; for "
-                     "example \"gauge\": \"33 mm\"");
+                     "only one of \"extension\" and \"gauge\", the length that it refers to, is "
+                     "given\nboth or none\n{\"gauge\": \"33 mm\"}");
   }
   enum status status = reader_column(reader, columns, "/columns", abscissae[found].key,
                                      abscissae[found].unit, abscissae[found].example, &fit->strain);
@@ -88,7 +89,7 @@ static enum status read_model(const struct reader *reader, const json_t *documen
   fit->count = fit->model == MATERIAL_OGDEN ? 2 * fit->terms : fit->terms;
   if (models[i].terms > 0 && json_object_get(document, "terms")) {
     return error_set(reader->error, STATUS_INVALID, "/terms",
-                     "the law \"%s\" has no choice of terms; those of \"yeoh\" and \"ogden\" have",
+                     "the law \"%s\" has no choice of terms\nterms of \"yeoh\" and \"ogden\" only",
                      word);
   }
   return STATUS_OK;
@@ -141,7 +142,7 @@ static enum status read_bounds(const struct reader *reader, const json_t *bounds
       char pointer[40];
       snprintf(pointer, sizeof pointer, "/bounds/%s", name);
       return error_set(reader->error, STATUS_INVALID, pointer,
-                       "the lower bound must be below the upper one; for example %s",
+                       "the lower bound is not below the upper one\nbounds that rise\n%s",
                        exponent ? "[1, 10]" : "[\"0 MPa\", \"1 MPa\"]");
     }
   }
@@ -153,7 +154,7 @@ static enum status read_bounds(const struct reader *reader, const json_t *bounds
                          fit_coefficient_name(fit, i));
     }
     return error_set(reader->error, STATUS_INVALID, "/bounds",
-                     "a bound names no coefficient of this law: it has %s", list);
+                     "a bound names no coefficient of this law\nit has %s", list);
   }
   return STATUS_OK;
 }
@@ -178,8 +179,7 @@ static enum status read_pair(const struct reader *reader, const json_t *document
   snprintf(pointer, sizeof pointer, "/%s", key);
   return *from < *to ? STATUS_OK
                      : error_set(reader->error, STATUS_INVALID, pointer,
-                                 "the range must rise: %g is not below %g; for example %s", *from,
-                                 *to, example);
+                                 "%g is not below %g\na range that rises\n%s", *from, *to, example);
 }
 
 static void read_head(const struct reader *reader, const json_t *document, struct job_spec *spec) {
@@ -209,8 +209,9 @@ enum status reader_fit(const struct reader *reader, const json_t *document, stru
     status = read_columns(reader, json_object_get(document, "columns"), fit);
   }
   if (status == STATUS_OK && fit->true_strain && fit->abscissa != ABSCISSA_STRAIN) {
-    status = error_set(reader->error, STATUS_INVALID, "/strain",
-                       "only a column of strain can hold true strains");
+    status =
+        error_set(reader->error, STATUS_INVALID, "/strain",
+                  "the column holds no strain, so no true one\n\"engineering\"\n\"engineering\"");
   }
   if (status == STATUS_OK) {
     status = tensile_read(document, fit, &curve, reader->error);

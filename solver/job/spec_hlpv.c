@@ -21,7 +21,8 @@ static enum status read_per(const struct reader *reader, const json_t *value,
   char quantity[QUOTED_MAX], quoted[QUOTED_MAX];
   if (!given) {
     return error_set(reader->error, STATUS_INVALID, pointer->text,
-                     "the key \"per\" is missing, the unit of the set-point; for example \"psi\"");
+                     "the key \"per\" is missing, the unit of the set-point\na unit of "
+                     "pressure\n{\"per\": \"psi\"}");
   }
   snprintf(quantity, sizeof quantity, "1 %s", given);
   if (units_read(reader->units, quantity, "kPa", per, NULL) == STATUS_OK && *per > 0.0) {
@@ -29,7 +30,7 @@ static enum status read_per(const struct reader *reader, const json_t *value,
   }
   json_pointer_key(pointer, "per");
   return error_set(reader->error, STATUS_INVALID, pointer->text,
-                   "%s is no unit of pressure; for example \"psi\" or \"kPa\"",
+                   "%s is no unit of pressure\na unit of pressure\n\"kPa\"",
                    text_quote(quoted, sizeof quoted, given));
 }
 
@@ -48,8 +49,8 @@ static enum status read_polynomial(const struct reader *reader, const json_t *va
   enum status status = STATUS_OK;
   if (!steady && !coefficients) {
     return error_set(reader->error, STATUS_INVALID, pointer->text,
-                     "the key \"coefficients\" is missing; for example [\"3600 N/m\", \"-316 "
-                     "N/m\"]");
+                     "the key \"coefficients\" is missing\nan array of "
+                     "quantities\n{\"coefficients\": [\"3600 N/m\", \"-316 N/m\"]}");
   }
   if (!steady || json_object_get(value, "per")) {
     status = read_per(reader, value, pointer, &polynomial->per);
@@ -92,7 +93,7 @@ static enum status read_mode(const struct reader *reader, const char *name, cons
   if (status == STATUS_OK && !(mode->from < mode->to)) {
     json_pointer_key(&pointer, "range");
     status = error_set(reader->error, STATUS_INVALID, pointer.text,
-                       "the range must rise; for example [\"0 psi\", \"8 psi\"]");
+                       "the range does not rise\na range that rises\n[\"0 psi\", \"8 psi\"]");
   }
   return status;
 }
@@ -103,7 +104,7 @@ static enum status read_modes(const struct reader *reader, const json_t *modes,
   json_t *value;
   if (json_object_size(modes) == 0) {
     return error_set(reader->error, STATUS_INVALID, "/model/modes",
-                     "at least one mode is wanted; for example \"compressed\": { ... }");
+                     "the model has no mode\nat least one mode, for example \"compressed\"");
   }
   json_object_foreach((json_t *)modes, name, value) {
     enum status status = read_mode(reader, name, value, spec, &spec->mode[spec->mode_count++]);
@@ -127,9 +128,9 @@ static enum status find_mode(const struct reader *reader, const struct hlpv_spec
   char quoted[QUOTED_MAX], known[QUOTED_MAX];
   const char *near = text_nearest(name, words, (size_t)spec->mode_count);
   return error_set(reader->error, STATUS_INVALID, pointer,
-                   "there is no mode %s; %s is one of the model's %d",
+                   "there is no mode %s\none of the model's modes, of which %s is one",
                    text_quote(quoted, sizeof quoted, name),
-                   text_quote(known, sizeof known, near ? near : words[0]), spec->mode_count);
+                   text_quote(known, sizeof known, near ? near : words[0]));
 }
 
 /* ---- transitions -------------------------------------------------------------------------- */
@@ -152,14 +153,15 @@ static enum status read_guard(const struct reader *reader, const json_t *when, c
       strcmp(json_string_value(json_object_get(when, "direction")), "rising") == 0 ? 1 : -1;
   if (given != 1) {
     return error_set(reader->error, STATUS_INVALID, pointer,
-                     "one of \"h\", \"velocity\" or \"pressure\" is wanted, not %d; for example "
-                     "{ \"h\": \"14 mm\", \"direction\": \"rising\" }",
+                     "%d quantities are compared\none of \"h\", \"velocity\" and \"pressure\"\n{ "
+                     "\"h\": \"14 mm\", \"direction\": \"rising\" }",
                      given);
   }
   return isfinite(transition->level)
              ? STATUS_OK
              : error_set(reader->error, STATUS_INVALID, pointer,
-                         "the mode has no state of rest there: its stiffness vanishes");
+                         "the mode has no state of rest there, for its stiffness vanishes\na "
+                         "set-point with a stiffness");
 }
 
 static enum status read_reset(const struct reader *reader, const json_t *reset, const char *pointer,
@@ -179,9 +181,10 @@ static enum status read_reset(const struct reader *reader, const json_t *reset, 
       *map = (struct hlpv_reset){.value = reader_quantity(reader, value, quantity_units[i])};
     }
     if (json_is_object(value) && (!factor == !steady || !isfinite(map->value))) {
-      return error_set(reader->error, STATUS_INVALID, pointer,
-                       "a reset is a value, { \"times\": -0.8 } of the one before, or for h { "
-                       "\"steady\": \"4 psi\" }, a state of rest that the mode has");
+      return error_set(
+          reader->error, STATUS_INVALID, pointer,
+          "the reset has no value\na value, { \"times\": -0.8 } of the one before, or for h { "
+          "\"steady\": \"4 psi\" }, a state of rest that the mode has");
     }
   }
   return STATUS_OK;
@@ -241,7 +244,7 @@ static enum status check_start(const struct reader *reader, const struct hlpv_sp
         hlpv_is_crossed(spec, transition, hlpv_set_point(&spec->input, 0.0), spec->initial)) {
       return error_set(reader->error, STATUS_INVALID, pointer,
                        "the start lies beyond the guard of /model/transitions/%d, which leaves the "
-                       "mode \"%.40s\": start on its other side, or in the mode \"%.40s\"",
+                       "mode \"%.40s\"\nstart on its other side, or in the mode \"%.40s\"",
                        i, spec->mode[transition->from].name, spec->mode[transition->to].name);
     }
   }
@@ -255,9 +258,8 @@ static enum status read_drive(const struct reader *reader, const json_t *documen
   const json_t *control = json_object_get(document, "control");
   if (!input == !control) {
     return error_set(reader->error, STATUS_INVALID, control ? "/control" : NULL,
-                     "one of \"input\" and \"control\" is wanted, %s: a set-point over time, or a "
-                     "controller that makes it; for example \"input\": { \"hold\": [[\"0 s\", \"3 "
-                     "psi\"]] }",
+                     "one of \"input\" and \"control\" is wanted, %s\na set-point over time, or a "
+                     "controller that makes it\n{\"input\": { \"hold\": [[\"0 s\", \"3 psi\"]] }}",
                      control ? "not both" : "and none is there");
   }
   return input ? reader_set_point(reader, input, "/input", &spec->input)

@@ -41,8 +41,8 @@ static enum status read_modes(const struct reader *reader, const json_t *modes,
         char pointer[40];
         snprintf(pointer, sizeof pointer, "/modes/%zu/name", index);
         return error_set(reader->error, STATUS_INVALID, pointer,
-                         "two modes have the same name; for example \"compressed\" and "
-                         "\"stretched\"");
+                         "two modes have the same name\ndifferent names, for example "
+                         "\"compressed\" and \"stretched\"");
       }
     }
   }
@@ -54,8 +54,8 @@ static enum status read_levels(const struct reader *reader, const json_t *levels
   spec->level_count = (int)json_array_size(levels);
   if (spec->level_count > 0 && spec->level_count != spec->mode_count - 1) {
     return error_set(reader->error, STATUS_INVALID, "/levels",
-                     "%d modes are parted by %d levels, not %d; for example \"levels\": [\"21 "
-                     "mm\"] between two modes",
+                     "%d modes are parted by %d levels, not %d\none level between two modes, for "
+                     "example [\"21 mm\"]",
                      spec->mode_count, spec->mode_count - 1, spec->level_count);
   }
   for (int i = 0; i < spec->level_count; i++) {
@@ -64,8 +64,8 @@ static enum status read_levels(const struct reader *reader, const json_t *levels
       char pointer[40];
       snprintf(pointer, sizeof pointer, "/levels/%d", i);
       return error_set(reader->error, STATUS_INVALID, pointer,
-                       "the levels must rise as the modes do, from short to long; for example "
-                       "[\"21 mm\", \"50 mm\"]");
+                       "the levels do not rise\nlevels that rise as the modes do, from short to "
+                       "long\n[\"21 mm\", \"50 mm\"]");
     }
   }
   return STATUS_OK;
@@ -90,7 +90,7 @@ static enum status read_per(const struct reader *reader, const json_t *document,
     return STATUS_OK;
   }
   return error_set(reader->error, STATUS_INVALID, "/per",
-                   "%s is no unit of pressure; for example \"psi\" or \"kPa\"",
+                   "%s is no unit of pressure\na unit of pressure\n\"kPa\"",
                    text_quote(quoted, sizeof quoted, spec->per_name));
 }
 
@@ -99,8 +99,8 @@ static enum status check_tables(const struct reader *reader, const json_t *docum
   return data != tables
              ? STATUS_OK
              : error_set(reader->error, STATUS_INVALID, data ? "/tables" : "",
-                         "one of \"data\", a table, and \"tables\", several of them, is wanted; "
-                         "for example \"data\": { \"file\": \"trials.csv\" }");
+                         "none or both of \"data\", a table, and \"tables\", several of them, are "
+                         "given\none of them, for example \"data\": { \"file\": \"trials.csv\" }");
 }
 
 enum status reader_identify(const struct reader *reader, const json_t *document,

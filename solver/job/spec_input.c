@@ -46,12 +46,12 @@ static enum status check_times(const struct reader *reader, const struct hlpv_in
     }
     if (i == 0 && input->time[i] != 0.0) {
       return error_set(reader->error, STATUS_INVALID, where,
-                       "%sthe profile begins at %.9g s; its first time must be 0 s", place,
+                       "%sthe profile begins at %.9g s\na first time of 0 s", place,
                        input->time[i]);
     }
     if (i > 0 && !(input->time[i] > input->time[i - 1])) {
       return error_set(reader->error, STATUS_INVALID, where,
-                       "%sthe time %.9g s is not after the one before it, %.9g s: times must rise",
+                       "%sthe time %.9g s is not after the one before it, %.9g s\ntimes that rise",
                        place, input->time[i], input->time[i - 1]);
     }
   }
@@ -154,11 +154,11 @@ enum status reader_reference(const struct reader *reader, const json_t *value, c
                              struct hlpv_input *input) {
   int given = !!json_object_get(value, "hold") + !!json_object_get(value, "linear") +
               !!json_object_get(value, "sine");
-  return given == 1 ? read_given(reader, value, pointer, &elongation, input)
-                    : error_set(reader->error, STATUS_INVALID, pointer,
-                                "one of \"hold\", \"linear\" or \"sine\" is wanted, not %d; for "
-                                "example %s",
-                                given, elongation.example);
+  return given == 1
+             ? read_given(reader, value, pointer, &elongation, input)
+             : error_set(reader->error, STATUS_INVALID, pointer,
+                         "there are %d profiles\none of \"hold\", \"linear\" and \"sine\"\n%s",
+                         given, elongation.example);
 }
 
 enum status reader_set_point(const struct reader *reader, const json_t *value, const char *pointer,
@@ -168,20 +168,21 @@ enum status reader_set_point(const struct reader *reader, const json_t *value, c
   int given = !!hold + !!linear + !!sine + !!data;
   char where[POINTER_MAX];
   if (given != 1) {
-    return error_set(reader->error, STATUS_INVALID, pointer,
-                     "one of \"hold\", \"linear\", \"sine\" or \"data\" is wanted, not %d; for "
-                     "example %s",
-                     given, pressure.example);
+    return error_set(
+        reader->error, STATUS_INVALID, pointer,
+        "there are %d profiles\none of \"hold\", \"linear\", \"sine\" and \"data\"\n%s", given,
+        pressure.example);
   }
   if (!data && json_object_get(value, "columns")) {
     snprintf(where, sizeof where, "%s/columns", pointer);
     return error_set(reader->error, STATUS_INVALID, where,
-                     "columns are those of a table in \"data\", which is not there");
+                     "there are columns but no table\ncolumns of a table in \"data\"");
   }
   if (data && !json_object_get(value, "columns")) {
-    return error_set(reader->error, STATUS_INVALID, pointer,
-                     "the key \"columns\" is missing; for example { \"time\": { \"name\": \"t\", "
-                     "\"unit\": \"s\" }, \"set_point\": { \"name\": \"u\", \"unit\": \"kPa\" } }");
+    return error_set(
+        reader->error, STATUS_INVALID, pointer,
+        "the key \"columns\" is missing\nan object\n{\"columns\": { \"time\": { \"name\": \"t\", "
+        "\"unit\": \"s\" }, \"set_point\": { \"name\": \"u\", \"unit\": \"kPa\" } }}");
   }
   return data ? read_data(reader, value, pointer, input)
               : read_given(reader, value, pointer, &pressure, input);
@@ -198,7 +199,6 @@ enum status reader_check_samples(const struct reader *reader, double end, double
   return samples <= most
              ? STATUS_OK
              : error_set(reader->error, STATUS_INVALID, "/sample_rate",
-                         "%.6g Hz over %.6g s make %.0f samples; at most %d are allowed, which "
-                         "\"%.4g Hz\" keeps to",
-                         rate, end, samples, most, round_down((most - 1) / end));
+                         "%.6g Hz over %.6g s make %.0f samples\nat most %d\n\"%.4g Hz\"", rate,
+                         end, samples, most, round_down((most - 1) / end));
 }

@@ -5,7 +5,7 @@
 /* The member "key" of the pressure has to be there. */
 static enum status missing(const struct reader *reader, const char *key, const char *example) {
   return error_set(reader->error, STATUS_INVALID, "/load/pressure",
-                   "the key \"%s\" is missing; for example %s", key, example);
+                   "the key \"%s\" is missing\na pressure\n{%s}", key, example);
 }
 
 /* Pressures of two rows: the load runs to the higher one, and the cavities follow in proportion. */
@@ -18,13 +18,13 @@ static enum status read_rows(const struct reader *reader, const json_t *pressure
     const char *place = c == 0 ? "/load/pressure/left" : "/load/pressure/right";
     if (json_object_get(pressure, side[c]) && family != FAMILY_OBLIQUE) {
       return error_set(reader->error, STATUS_INVALID, place,
-                       "only the family \"oblique-pneunet\" has two rows of chambers: give \"to\", "
-                       "for example \"to\": \"50 kPa\"");
+                       "only the family \"oblique-pneunet\" has two rows of chambers\none "
+                       "pressure\n{\"to\": \"50 kPa\"}");
     }
     if (json_object_get(pressure, side[c]) && json_object_get(pressure, "to")) {
-      return error_set(reader->error, STATUS_INVALID, place,
-                       "\"to\" already is the pressure of both rows: leave it out, or \"left\" and "
-                       "\"right\"");
+      return error_set(
+          reader->error, STATUS_INVALID, place,
+          "\"to\" already is the pressure of both rows\nleave it out, or \"left\" and \"right\"");
     }
     if (!json_object_get(pressure, side[c])) {
       return missing(reader, side[c], example);
@@ -34,8 +34,7 @@ static enum status read_rows(const struct reader *reader, const json_t *pressure
   spec->pressure_to = fmax(row[0], row[1]);
   if (!(spec->pressure_to > 0.0)) {
     return error_set(reader->error, STATUS_INVALID, "/load/pressure/left",
-                     "no row has a pressure: one of both must be above 0 kPa, for example %s",
-                     example);
+                     "no row has a pressure\none of both above 0 kPa, for example %s", example);
   }
   for (int c = 0; c < 2; c++) {
     spec->cavity_share[c] = row[c] / spec->pressure_to;

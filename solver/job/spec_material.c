@@ -20,7 +20,7 @@ static enum status read_ogden(const struct reader *reader, const json_t *materia
   spec->terms = read_moduli(reader, json_object_get(material, "mu"), spec->c);
   if (json_array_size(alpha) != (size_t)spec->terms) {
     return error_set(reader->error, STATUS_INVALID, "/material/alpha",
-                     "there are %zu exponents for %d moduli: give one for each",
+                     "there are %zu exponents for %d moduli\ngive one for each",
                      json_array_size(alpha), spec->terms);
   }
   for (int i = 0; i < spec->terms; i++) {
@@ -29,7 +29,7 @@ static enum status read_ogden(const struct reader *reader, const json_t *materia
       char pointer[40];
       snprintf(pointer, sizeof pointer, "/material/alpha/%d", i);
       return error_set(reader->error, STATUS_INVALID, pointer,
-                       "an exponent must not be 0; for example 1.3");
+                       "an exponent is 0\na number other than 0\n1.3");
     }
   }
   return STATUS_OK;
@@ -84,10 +84,10 @@ enum status reader_material(const struct reader *reader, const json_t *material,
   }
   double modulus = material_shear_modulus(spec);
   if (!(modulus >= 1.0)) {
-    return error_set(reader->error, STATUS_INVALID, "/material",
-                     "the initial shear modulus of this %s material is %.6g Pa: it must be at "
-                     "least 1 Pa",
-                     model, modulus);
+    return error_set(
+        reader->error, STATUS_INVALID, "/material",
+        "the initial shear modulus of this %s material is %.6g Pa\nit must be at least 1 Pa", model,
+        modulus);
   }
   return STATUS_OK;
 }

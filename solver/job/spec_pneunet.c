@@ -17,7 +17,7 @@ static enum status read_chambers(const struct reader *reader, const json_t *cham
   }
   if (spec->chamber_count > CHAMBERS_MAX) {
     return error_set(reader->error, STATUS_GEOMETRY, "/actuator/chambers",
-                     "there are %d chambers: at most %d are possible", spec->chamber_count,
+                     "there are %d chambers\nat most %d are possible", spec->chamber_count,
                      CHAMBERS_MAX);
   }
   return STATUS_OK;
@@ -50,15 +50,15 @@ static enum status derive_length(const struct pneunet_given *given, struct pneun
   double length = given->length, chamber = given->chamber_length;
   if (isnan(length) && isnan(chamber)) {
     return error_set(error, STATUS_INVALID, "/actuator",
-                     "the key \"length\" is missing (\"chamber_length\" can take its place); for "
-                     "example \"length\": \"118 mm\"");
+                     "the key \"length\" is missing (\"chamber_length\" can take its place)\na "
+                     "length with its unit\n{\"length\": \"118 mm\"}");
   }
   if (isnan(chamber)) {
     spec->length = length;
     spec->cavity_length = (length - fixed) / n;
     if (spec->cavity_length < CAVITY_MINIMUM) {
       return error_set(error, STATUS_GEOMETRY, "/actuator/length",
-                       "walls and gaps take %.6g mm of the %.6g mm: with %d cavities of 0.1 mm or "
+                       "walls and gaps take %.6g mm of the %.6g mm\nwith %d cavities of 0.1 mm or "
                        "more the length must be at least %.6g mm",
                        fixed * 1e3, length * 1e3, n, (fixed + n * CAVITY_MINIMUM) * 1e3);
     }
@@ -68,8 +68,8 @@ static enum status derive_length(const struct pneunet_given *given, struct pneun
   spec->length = fixed + n * spec->cavity_length;
   if (spec->cavity_length < CAVITY_MINIMUM) {
     return error_set(error, STATUS_GEOMETRY, "/actuator/chamber_length",
-                     "two walls of %.6g mm leave no cavity of 0.1 mm or more in a chamber of "
-                     "%.6g mm: it must be at least %.6g mm long",
+                     "two walls of %.6g mm leave no cavity of 0.1 mm or more in a chamber of %.6g "
+                     "mm\nit must be at least %.6g mm long",
                      wall * 1e3, chamber * 1e3, (2.0 * wall + CAVITY_MINIMUM) * 1e3);
   }
   return STATUS_OK;
@@ -82,8 +82,8 @@ static enum status check_lengths(const struct pneunet_given *given, const struct
     return STATUS_OK;
   }
   return error_set(error, STATUS_GEOMETRY, "/actuator/chamber_length",
-                   "%d chambers of %.6g mm with their gaps make %.6g mm, but the length is "
-                   "%.6g mm: give only one of \"length\" and \"chamber_length\"",
+                   "%d chambers of %.6g mm with their gaps make %.6g mm, but the length is %.6g "
+                   "mm\ngive only one of \"length\" and \"chamber_length\"",
                    spec->chamber_count, given->chamber_length * 1e3, spec->length * 1e3,
                    given->length * 1e3);
 }
@@ -95,7 +95,7 @@ static enum status derive_heights(const struct pneunet_given *given, struct pneu
   if (isnan(given->height) && (spec->taper_top != 0.0 || spec->taper_bottom != 0.0)) {
     return error_set(error, STATUS_INVALID,
                      spec->taper_top != 0.0 ? "/actuator/taper/top" : "/actuator/taper/bottom",
-                     "heights at base and tip already describe the slope: leave out the taper of "
+                     "heights at base and tip already describe the slope\nleave out the taper of "
                      "top and bottom, or give one height");
   }
   return STATUS_OK;
@@ -118,8 +118,8 @@ static enum status derive_gaps(const struct pneunet_given *given, struct pneunet
   spec->chamber_gap = gaps > 0 ? given->chamber_gap : 0.0;
   if (gaps > 0 && !(spec->chamber_gap >= 1e-6)) {
     return error_set(error, STATUS_GEOMETRY, "/actuator/chamber_gap",
-                     "chambers of configuration B and C need a gap of at least 0.001 mm: write for "
-                     "example \"2 mm\", or use configuration A");
+                     "chambers of configuration B and C have gaps, and this is none\nat least "
+                     "0.001 mm, or configuration A\n\"2 mm\"");
   }
   double root = root_share[spec->gap_shape] * spec->chamber_gap;
   spec->gap_root = shaped && gaps > 0 ? otherwise(given->gap_root, root) : root;

@@ -27,7 +27,7 @@ static enum status read_factors(const struct reader *reader, const json_t *imper
   char pointer[80];
   snprintf(pointer, sizeof pointer, "/actuator/imperfection/%s", key);
   return error_set(reader->error, STATUS_INVALID, pointer,
-                   "there are %zu factors for %d pair%s: give one for each, from below",
+                   "there are %zu factors for %d pair%s\ngive one for each, from below",
                    json_array_size(given), pair_count, pair_count == 1 ? "" : "s");
 }
 
@@ -94,16 +94,16 @@ static enum status read_law(const struct reader *reader, const json_t *law,
       char pointer[40];
       snprintf(pointer, sizeof pointer, "/load/law/%zu", index);
       return error_set(reader->error, STATUS_INVALID, pointer,
-                       "the pressures must rise: %.6g kPa is not above %.6g kPa", pressure / 1e3,
+                       "%.6g kPa is not above %.6g kPa\npressures that rise", pressure / 1e3,
                        spec->law[spec->law_count - 1] / 1e3);
     }
     spec->law[spec->law_count++] = pressure;
   }
   if (spec->law_count > 0 && spec->pair_count > 1) {
-    return error_set(reader->error, STATUS_INVALID, "/load/law",
-                     "the law is that of one pair, and there are %d: leave it out, or give "
-                     "\"pairs\": 1",
-                     spec->pair_count);
+    return error_set(
+        reader->error, STATUS_INVALID, "/load/law",
+        "the law is that of one pair, and there are %d\nleave it out, or give \"pairs\": 1",
+        spec->pair_count);
   }
   return STATUS_OK;
 }
@@ -115,7 +115,7 @@ static enum status read_snap_load(const struct reader *reader, const json_t *loa
   spec->extension_at = reader_member(reader, load, "extension_at", "kPa", spec->pressure_to);
   if (spec->extension_at < 0.0 || spec->extension_at > spec->pressure_to * (1.0 + 1e-9)) {
     return error_set(reader->error, STATUS_INVALID, "/load/extension_at",
-                     "%.6g kPa is not on the way from 0 to %.6g kPa, the largest pressure",
+                     "%.6g kPa is not on the way\n0 to %.6g kPa, the largest pressure",
                      spec->extension_at / 1e3, spec->pressure_to / 1e3);
   }
   return read_law(reader, json_object_get(load, "law"), spec);
@@ -160,9 +160,9 @@ static enum status check_end(const struct reader *reader, const struct snap_spec
   char pointer[40];
   snprintf(pointer, sizeof pointer, "/calibrate/%s", key);
   return error_set(reader->error, STATUS_GEOMETRY, pointer,
-                   "there is no body with %s = %.6g %s%s%s", spec->calibrate.pointer,
+                   "there is no body with %s = %.6g %s\n%s", spec->calibrate.pointer,
                    value / spec->calibrate.unit_si, spec->calibrate.unit,
-                   error.message[0] ? ": " : "; it must be positive", error.message);
+                   error.message[0] ? error.message : "a positive number");
 }
 
 static enum status read_calibrate(const struct reader *reader, const json_t *calibrate,
@@ -192,7 +192,7 @@ static enum status read_calibrate(const struct reader *reader, const json_t *cal
   }
   if (status == STATUS_OK && c->from >= c->to) {
     return error_set(reader->error, STATUS_INVALID, "/calibrate/to",
-                     "the range must rise: %.6g %s is not above %.6g %s", c->to / c->unit_si,
+                     "%.6g %s is not above %.6g %s\na range that rises", c->to / c->unit_si,
                      c->unit, c->from / c->unit_si, c->unit);
   }
   if (status == STATUS_OK) {

@@ -70,10 +70,11 @@ static enum status find_levels(struct parting *p, const double *h, size_t count)
   }
   qsort(level, (size_t)wanted, sizeof *level, numbers_compare);
   if (wanted > 0 && !(width[wanted - 1] > moving * p->steps->range[0])) {
-    return error_set(p->error, STATUS_INVALID, "/modes",
-                     "no jump of the elongation parts the %d modes: the widest empty stretches are "
-                     "down to %.3g mm; give \"levels\", for example [\"21 mm\"], or one mode",
-                     p->spec->mode_count, 1e3 * width[wanted - 1]);
+    return error_set(
+        p->error, STATUS_INVALID, "/modes",
+        "no jump of the elongation parts the %d modes: the widest empty stretches are down to %.3g "
+        "mm\n\"levels\" between the modes, for example [\"21 mm\"], or one mode",
+        p->spec->mode_count, 1e3 * width[wanted - 1]);
   }
   return STATUS_OK;
 }
@@ -223,11 +224,11 @@ static enum status add_step(struct parting *p, const struct step *step) {
 /* ---- one trial ---------------------------------------------------------------------------- */
 
 static enum status refuse_ramp(const struct parting *p, const struct trial *trial, size_t row) {
-  return error_set(p->error, STATUS_INVALID, trial->pointer,
-                   "line %d of the table: the set-point is not held: it changes again, to %.6g "
-                   "kPa, less than %d rows after its last change; a step needs a set-point that "
-                   "stays the same to a thousandth",
-                   trial->line[row], 1e-3 * trial->set_point[row], STEP_ROWS_MIN);
+  return error_set(
+      p->error, STATUS_INVALID, trial->pointer,
+      "line %d of the table: the set-point is not held: it changes again, to %.6g kPa, less than "
+      "%d rows after its last change\nsteps with a set-point that stays the same to a thousandth",
+      trial->line[row], 1e-3 * trial->set_point[row], STEP_ROWS_MIN);
 }
 
 /* Parts rows [first, last) of one set-point by their modes. A mode lasts at least as long as a

@@ -147,13 +147,14 @@ static enum status refer(const struct draft *draft, struct error *error) {
   size_t longest = 0;
   for (int c = 0; c < draft->count && inner.pointer[0]; c++) {
     size_t length = strlen(draft->change[c].pointer);
-    if (concerns(draft->change[c].pointer, inner.pointer) && length >= longest) {
+    if (concerns(draft->change[c].pointer, inner) && length >= longest) {
       origin = &draft->change[c].origin;
       longest = length;
     }
   }
-  return error_set(error, inner.status, origin->text, "member \"%.80s\"%s%s: %s", draft->name,
-                   inner.pointer[0] ? ", " : "", inner.pointer, inner.message);
+  error_carry(error, origin->text, "member \"%.80s\"%s%s: ", draft->name, inner[0] ? ", " : "",
+              inner);
+  return error->status;
 }
 
 static enum status no_memory(struct error *error) {
@@ -171,8 +172,7 @@ static json_t *build(const json_t *document, const struct draft *draft, struct e
   for (int c = 0; c < draft->count && status == STATUS_OK; c++) {
     status = study_set(built, draft->change[c].pointer, draft->change[c].value, error);
     if (status != STATUS_OK) {
-      struct error inner = *error;
-      error_set(error, status, draft->change[c].origin.text, "%s", inner.message);
+      error_carry(error, draft->change[c].origin.text, "%s", "");
     }
   }
   if (status == STATUS_OK) {
@@ -197,8 +197,8 @@ static enum status check_stations(const struct study_ranking *ranking, const str
       char pointer[48];
       snprintf(pointer, sizeof pointer, "/ranking/stations/%d", s);
       return error_set(error, STATUS_INVALID, pointer,
-                       "the station at %.6g mm lies beyond the end of the member \"%.80s\", which "
-                       "is %.6g mm long",
+                       "the station at %.6g mm lies beyond the end of the member \"%.80s\"\nat "
+                       "most its length, %.6g mm",
                        1e3 * ranking->station[s], draft->name, 1e3 * spec->pneunet.length);
     }
   }
@@ -334,8 +334,8 @@ static enum status read_ranking(const struct reader *reader, const json_t *docum
   double sum = ranking->bending + ranking->slope + ranking->deflection;
   if (fabs(sum - 1) > 1e-9) {
     return error_set(reader->error, STATUS_INVALID, "/ranking/weights",
-                     "the weights add up to %.6g, not to 1; for example {\"bending\": 0.4, "
-                     "\"slope\": 0.3, \"deflection\": 0.3}",
+                     "the weights add up to %.6g, not to 1\nweights that add up to "
+                     "1\n{\"bending\": 0.4, \"slope\": 0.3, \"deflection\": 0.3}",
                      sum);
   }
   return STATUS_OK;
@@ -348,8 +348,8 @@ static enum status check_samples(double samples, size_t count, struct error *err
   return samples <= STUDY_SAMPLES_MAX
              ? STATUS_OK
              : error_set(error, STATUS_TOO_LARGE, "/keep",
-                         "the first %zu members have %.0f samples together; a study keeps at most "
-                         "%d: keep \"metrics\", or lower the sample rate of the base",
+                         "the first %zu members have %.0f samples together\nat most %d: keep "
+                         "\"metrics\", or lower the sample rate of the base",
                          count, samples, STUDY_SAMPLES_MAX);
 }
 

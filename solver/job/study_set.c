@@ -63,8 +63,8 @@ static enum status set_member(json_t *at, const char *part, json_t *value, const
     int index = array_index(at, part);
     if (index < 0) {
       return error_set(error, STATUS_INVALID, NULL,
-                       "%s names an item that the base does not have: the array has %zu, counted "
-                       "from 0",
+                       "%s names an item that the base does not have\none of the %zu items of the "
+                       "array, counted from 0",
                        text_quote(quoted, sizeof quoted, pointer), json_array_size(at));
     }
     int failed = remove ? json_array_remove(at, (size_t)index)
@@ -86,17 +86,16 @@ enum status study_set(json_t *document, const char *pointer, json_t *value, stru
   json_t *at = document;
   text_quote(quoted, sizeof quoted, pointer);
   if (*rest != '/') {
-    return error_set(error, STATUS_INVALID, NULL,
-                     "%s is no JSON pointer: it begins with a slash; for example "
-                     "\"/actuator/chamber_gap\"",
-                     quoted);
+    return error_set(
+        error, STATUS_INVALID, NULL,
+        "%s is no JSON pointer\ntext that begins with a slash\n\"/actuator/chamber_gap\"", quoted);
   }
   for (;;) {
     if (!take_part(&rest, part)) {
-      return error_set(error, STATUS_INVALID, NULL,
-                       "%s is no JSON pointer that a job can have: a ~ is written ~0, a slash "
-                       "within a key ~1",
-                       quoted);
+      return error_set(
+          error, STATUS_INVALID, NULL,
+          "%s is no JSON pointer that a job can have\na ~ is written ~0, a slash within a key ~1",
+          quoted);
     }
     if (*rest == '\0') {
       break;
@@ -104,14 +103,14 @@ enum status study_set(json_t *document, const char *pointer, json_t *value, stru
     at = enter(at, part);
     if (!json_is_object(at) && !json_is_array(at)) {
       return error_set(error, STATUS_INVALID, NULL,
-                       "%s leads nowhere: its part \"%.60s\" is no object or array of the base",
+                       "%s leads nowhere\na way through objects and arrays of the base; its part "
+                       "\"%.60s\" is no object or array of the base",
                        quoted, part);
     }
   }
   if (at == document && strcmp(part, "kind") == 0) {
-    return error_set(
-        error, STATUS_INVALID, NULL,
-        "the kind cannot be changed: the members of a study are of the kind of its base");
+    return error_set(error, STATUS_INVALID, NULL,
+                     "the kind cannot be changed\nmembers of the kind of its base");
   }
   return set_member(at, part, value, pointer, error);
 }

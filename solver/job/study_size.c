@@ -70,14 +70,14 @@ static enum status check_text(const json_t *document, size_t count, struct error
   int most = study_has_light_members(document) ? STUDY_LIGHT_TEXT_MAX : STUDY_TEXT_MAX;
   if ((base + change) * count > (size_t)most) {
     return error_set(error, STATUS_TOO_LARGE, "/base",
-                     "%zu members of %zu bytes are %zu bytes; at most %d (%d MiB) are allowed: "
-                     "use a shorter base or fewer members",
+                     "%zu members of %zu bytes are %zu bytes\nat most %d (%d MiB): use a shorter "
+                     "base or fewer members",
                      count, base + change, (base + change) * count, most, most >> 20);
   }
   if (study_has_light_members(document) && change * count > STUDY_TEXT_MAX) {
     return error_set(error, STATUS_TOO_LARGE, "/parameters",
-                     "the values of %zu members are %zu bytes; at most %d (16 MiB) are allowed: "
-                     "use shorter values or fewer members",
+                     "the values of %zu members are %zu bytes\nat most %d (16 MiB): use shorter "
+                     "values or fewer members",
                      count, change * count, STUDY_TEXT_MAX);
   }
   return STATUS_OK;
@@ -89,26 +89,26 @@ enum status study_check_size(const json_t *document, struct error *error) {
   const char *sampling = json_string_value(json_object_get(document, "sampling"));
   char pointer[32];
   if (!json_object_get(document, wanted)) {
-    return error_set(error, STATUS_INVALID, NULL,
-                     "the key \"%s\" is missing: the sampling \"%s\" needs it; for example %s",
-                     wanted, sampling,
-                     list ? "[{\"set\": {\"/actuator/taper/top\": \"1 deg\"}}]"
-                          : "[{\"pointer\": \"/actuator/chamber_gap\", \"values\": [\"1 mm\"]}]");
+    return error_set(
+        error, STATUS_INVALID, NULL,
+        "the key \"%s\" is missing, which the sampling \"%s\" needs\nan array\n{\"%s\": %s}",
+        wanted, sampling, wanted,
+        list ? "[{\"set\": {\"/actuator/taper/top\": \"1 deg\"}}]"
+             : "[{\"pointer\": \"/actuator/chamber_gap\", \"values\": [\"1 mm\"]}]");
   }
   if (json_object_get(document, other)) {
     snprintf(pointer, sizeof pointer, "/%s", other);
-    return error_set(error, STATUS_INVALID, pointer,
-                     "the sampling \"%s\" has no use for \"%s\": leave it out, or choose another "
-                     "sampling",
-                     sampling, other);
+    return error_set(
+        error, STATUS_INVALID, pointer,
+        "the sampling \"%s\" has no use for \"%s\"\nleave it out, or choose another sampling",
+        sampling, other);
   }
   size_t count = study_count(document), most = members_max(document);
   if (count > most) {
     snprintf(pointer, sizeof pointer, "/%s", wanted);
     return error_set(error, STATUS_TOO_LARGE, pointer,
-                     "the study has more than %zu members, the most that is allowed for the kind "
-                     "\"%s\"",
-                     most, study_base_kind(document));
+                     "the study has too many members\nat most %zu for the kind \"%s\"", most,
+                     study_base_kind(document));
   }
   return check_text(document, count, error);
 }

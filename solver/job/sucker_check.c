@@ -29,7 +29,7 @@ static enum status check_ring(const struct pneunet_spec *s, int index, struct er
   if (sucker->wall > 0.5 * sucker->diameter) {
     snprintf(place, sizeof place, "/actuator/suckers/%d/wall", index);
     return error_set(error, STATUS_GEOMETRY, place,
-                     "a ring of %.6g mm is thicker than the radius of its opening: at most %.6g mm "
+                     "a ring of %.6g mm is thicker than the radius of its opening\nat most %.6g mm "
                      "are possible for a diameter of %.6g mm",
                      to_mm(sucker->wall), to_mm(0.5 * sucker->diameter), to_mm(sucker->diameter));
   }
@@ -38,7 +38,7 @@ static enum status check_ring(const struct pneunet_spec *s, int index, struct er
     snprintf(place, sizeof place, "/actuator/suckers/%d/position", index);
     return error_set(error, STATUS_GEOMETRY, place,
                      "a sucker of %.6g mm with its ring, in the middle at %.6g mm, leaves the body "
-                     "at its %s: the middle must be between %.6g mm and %.6g mm",
+                     "at its %s\nthe middle must be between %.6g mm and %.6g mm",
                      to_mm(2 * outer), to_mm(sucker->position),
                      sucker->position < first ? "base" : "tip", to_mm(first), to_mm(last));
   }
@@ -46,7 +46,7 @@ static enum status check_ring(const struct pneunet_spec *s, int index, struct er
     snprintf(place, sizeof place, "/actuator/suckers/%d/diameter", index);
     return error_set(error, STATUS_GEOMETRY, place,
                      "a sucker of %.6g mm with its ring is wider than the body, which leaves room "
-                     "for %.6g mm at %.6g mm from the base: the diameter can be at most %.6g mm",
+                     "for %.6g mm at %.6g mm from the base\nthe diameter can be at most %.6g mm",
                      to_mm(2 * outer), to_mm(2 * (room - margin)), to_mm(sucker->position),
                      to_mm(fmax(0.0, 2 * (room - margin - sucker->wall))));
   }
@@ -65,7 +65,7 @@ static enum status check_pair(const struct pneunet_spec *s, int first, int secon
   snprintf(place, sizeof place, "/actuator/suckers/%d/position", second);
   return error_set(error, STATUS_GEOMETRY, place,
                    "the sucker overlaps that of /actuator/suckers/%d: their middles are %.6g mm "
-                   "apart and, with their rings, must be at least %.6g mm",
+                   "apart\nat least %.6g mm, with their rings",
                    first, to_mm(distance), to_mm(least));
 }
 

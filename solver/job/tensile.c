@@ -165,7 +165,7 @@ static enum status select_range(const struct fit_spec *fit, const struct table *
   if (curve->count < (size_t)fit->count + 2) {
     bool whole = isinf(fit->from) && isinf(fit->to);
     return error_set(error, STATUS_INVALID, whole ? "/data/csv" : "/range",
-                     "%zu of %zu points are used: %d coefficients need at least %d; the strains of "
+                     "%zu of %zu points are used\nfor %d coefficients at least %d; the strains of "
                      "the table go from %.4g to %.4g",
                      curve->count, table->rows, fit->count, fit->count + 2, low, high);
   }

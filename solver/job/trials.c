@@ -117,8 +117,7 @@ static enum status add_trial(struct gathering *g, const char *name, const char *
   trials->count++;
   if (trial->count < TRIAL_ROWS_MIN) {
     return error_set(g->error, STATUS_INVALID, pointer,
-                     "line %d of the table: the trial that begins here has %zu rows; at least %d "
-                     "are needed",
+                     "line %d of the table: the trial that begins here has %zu rows\nat least %d",
                      line[from], trial->count, TRIAL_ROWS_MIN);
   }
   return check_times(g, trial);
@@ -142,8 +141,8 @@ static enum status check_apart(const struct gathering *g, size_t first, const ch
     if (strcmp(g->trials->trial[i].name, name) == 0) {
       char quoted[QUOTED_MAX];
       return error_set(g->error, STATUS_INVALID, pointer,
-                       "line %d of the table: the trial %s begins again here; its rows must stand "
-                       "together (it was left after line %d)",
+                       "line %d of the table: the trial %s begins again here, after it was left "
+                       "after line %d\nrows of a trial that stand together",
                        line, text_quote(quoted, sizeof quoted, name),
                        g->trials->trial[i].line[g->trials->trial[i].count - 1]);
     }
@@ -229,8 +228,9 @@ static enum status read_tables(struct gathering *g, const json_t *document) {
     for (size_t i = 0; i < index && status == STATUS_OK; i++) {
       if (strcmp(json_string_value(json_object_get(json_array_get(tables, i), "name")), name) ==
           0) {
-        status = error_set(g->error, STATUS_INVALID, pointer,
-                           "two tables have the same name; for example \"run 1\" and \"run 2\"");
+        status = error_set(
+            g->error, STATUS_INVALID, pointer,
+            "two tables have the same name\ndifferent names, for example \"run 1\" and \"run 2\"");
       }
     }
     snprintf(pointer, sizeof pointer, "/tables/%zu/data/csv", index);
@@ -265,7 +265,7 @@ static enum status check_units(const struct gathering *g) {
   double range = h[1] - h[0], set = fmax(u[1], -u[0]), pressure = fmax(p[1], -p[0]);
   if (!(range >= range_min && range <= range_max)) {
     return error_set(g->error, STATUS_INVALID, "/columns/h/unit",
-                     "the elongations go from %.4g to %.4g mm: a soft actuator moves by more than "
+                     "the elongations go from %.4g to %.4g mm\na soft actuator moves by more than "
                      "1 um and less than 10 m; is the unit or the column another one?",
                      1e3 * h[0], 1e3 * h[1]);
   }
@@ -335,7 +335,7 @@ static enum status hold_named(const struct gathering *g, const json_t *names) {
       char pointer[40], quoted[QUOTED_MAX], first[QUOTED_MAX];
       snprintf(pointer, sizeof pointer, "/held_out/%zu", index);
       return error_set(g->error, STATUS_INVALID, pointer,
-                       "there is no trial %s among the %zu, the first of which is %s",
+                       "there is no trial %s\none of the %zu, the first of which is %s",
                        text_quote(quoted, sizeof quoted, json_string_value(name)), g->trials->count,
                        text_quote(first, sizeof first, g->trials->trial[0].name));
     }
@@ -366,7 +366,8 @@ enum status trials_read(const json_t *document, const struct identify_spec *spec
   }
   if (status == STATUS_OK && left == 0) {
     status = error_set(error, STATUS_INVALID, "/held_out",
-                       "all %zu trials are held out: none is left to identify from", trials->count);
+                       "all %zu trials are held out\nat least one that is left to identify from",
+                       trials->count);
   }
   if (status != STATUS_OK) {
     trials_release(trials);
