@@ -28,7 +28,9 @@ const char *status_sentence(enum status status) {
 /* Copies a part; cutting at the field's size, or a library's own message, may break a character,
  * and no JSON writer would take it then. */
 static void copy(char *field, size_t size, const char *text) {
-  snprintf(field, size, "%s", text);
+  size_t length = text_prefix(text, size - 1);
+  memcpy(field, text, length);
+  field[length] = '\0';
   text_repair(field);
 }
 
@@ -58,15 +60,21 @@ enum status error_set(struct error *error, enum status status, const char *point
   return status;
 }
 
+enum status error_nearest(struct error *error, enum status status, const char *nearest) {
+  if (error) {
+    copy(error->nearest, sizeof error->nearest, nearest ? nearest : "");
+  }
+  return status;
+}
+
 void error_carry(struct error *error, const char *pointer, const char *format, ...) {
-  char words[sizeof error->message];
+  char words[300], whole[sizeof words + sizeof error->message];
   va_list arguments;
   va_start(arguments, format);
   vsnprintf(words, sizeof words, format, arguments);
   va_end(arguments);
-  const struct error inner = *error;
-  snprintf(error->message, sizeof error->message, "%.300s%s", words, inner.message);
-  text_repair(error->message);
+  snprintf(whole, sizeof whole, "%s%s", words, error->message);
+  copy(error->message, sizeof error->message, whole);
   copy(error->pointer, sizeof error->pointer, pointer);
 }
 

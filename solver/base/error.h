@@ -26,7 +26,12 @@ struct error {
 enum status error_set(struct error *error, enum status status, const char *pointer,
                       const char *format, ...) __attribute__((format(printf, 4, 5)));
 
-/* Moves *error to another pointer and puts words, printf-like, before its message; the parts stay. */
+/* Notes the known word that was probably meant (NULL: none) in an error that error_set has just
+ * filled; `error` may be NULL. Returns `status`. */
+enum status error_nearest(struct error *error, enum status status, const char *nearest);
+
+/* Moves *error to another pointer and puts words, printf-like, before its message; the parts stay.
+ */
 void error_carry(struct error *error, const char *pointer, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

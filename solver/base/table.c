@@ -246,9 +246,12 @@ static enum status refuse_name(const struct reading *reading, const struct recor
   if (near) {
     snprintf(hint, sizeof hint, " (did you mean %s?)", text_quote(known, sizeof known, near));
   }
-  return error_set(reading->error, STATUS_INVALID, wanted->pointer,
-                   "the table has no column %s%s: its header, line %d, has others\n%s",
-                   text_quote(name, sizeof name, wanted->name), hint, header->line, list);
+  return error_nearest(
+      reading->error,
+      error_set(reading->error, STATUS_INVALID, wanted->pointer,
+                "the table has no column %s%s: its header, line %d, has others\n%s",
+                text_quote(name, sizeof name, wanted->name), hint, header->line, list),
+      near);
 }
 
 static enum status place_columns(struct reading *reading, const struct record *header) {

@@ -35,6 +35,20 @@ static size_t character_length(const unsigned char *at) {
   return malformed ? 0 : length;
 }
 
+size_t text_valid(const char *text, size_t size) {
+  size_t valid = 0;
+  while (valid < size) {
+    unsigned char next[5] = {0}; /* the longest character and its end */
+    memcpy(next, text + valid, size - valid < 4 ? size - valid : 4);
+    size_t length = character_length(next);
+    if (length == 0) {
+      break;
+    }
+    valid += length;
+  }
+  return valid;
+}
+
 void text_repair(char *text) {
   while (*text) {
     size_t length = character_length((const unsigned char *)text);
@@ -104,7 +118,8 @@ const char *text_nearest(const char *text, const char *const *words, size_t coun
   for (size_t i = 0; i < count; i++) {
     size_t distance = text_distance(text, words[i]);
     size_t allowed = strlen(words[i]) / 3;
-    if (distance < least && distance <= (allowed > 1 ? allowed : 1)) {
+    if (distance < least && distance <= (allowed > 1 ? allowed : 1) &&
+        (distance == 0 || distance < strlen(words[i]))) {
       least = distance;
       nearest = words[i];
     }

@@ -9,6 +9,9 @@
  * Returns its length in bytes. */
 size_t text_prefix(const char *text, size_t limit);
 
+/* Length of the longest prefix of `size` bytes that is valid UTF-8. */
+size_t text_valid(const char *text, size_t size);
+
 /* Replaces every byte of `text` that is not part of a valid UTF-8 character by '?'. */
 void text_repair(char *text);
 

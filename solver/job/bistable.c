@@ -117,7 +117,7 @@ enum status law_table_read(const json_t *law, const char *pointer, struct law_ta
     if (status == STATUS_OK && i > 0 && !(level->pressure > level[-1].pressure)) {
       status = error_set(
           error, STATUS_INVALID, where,
-          "the pressure %.6g kPa is not above the one before it, %.6g kPa\npressures that rise",
+          "the pressure %.6g kPa is not above the one before it, %.6g kPa\nthey must rise",
           1e-3 * level->pressure, 1e-3 * level[-1].pressure);
     }
     if (status == STATUS_OK) {

@@ -100,16 +100,37 @@ static const char *piece_advice(const char *piece, size_t length) {
   return NULL;
 }
 
+/* A piece that is no JSON, or stands where another is due: Jansson names those as "':' expected".
+ */
+static void refuse_piece(const char *text, size_t size, size_t start, size_t end,
+                         const json_error_t *problem, struct error *error) {
+  char piece[64], quoted[70];
+  const char *advice = piece_advice(text + start, size - start);
+  const char *due = strstr(problem->text, " expected");
+  snprintf(piece, sizeof piece, "%.*s", (int)(end - start), text + start);
+  text_quote(quoted, sizeof quoted, piece);
+  if (advice) {
+    error_set(error, STATUS_SYNTAX, NULL, "not well-formed JSON: %s", advice);
+  } else if (due) {
+    error_set(error, STATUS_SYNTAX, NULL,
+              "not well-formed JSON: %s stands where something else is due\n%.*s",
+              piece[0] == '"' ? piece : quoted, (int)(due - problem->text), problem->text);
+  } else {
+    char said[2 * JSON_ERROR_TEXT_LENGTH];
+    text_quote(said, sizeof said, problem->text); /* it quotes the text with its line feeds */
+    error_set(error, STATUS_SYNTAX, NULL, "not well-formed JSON: the reader says %s", said);
+  }
+}
+
 /* Says what Jansson found, with the place where the offending piece begins. */
 static enum status refuse_syntax(const char *text, size_t size, const json_error_t *problem,
                                  struct error *error) {
   static const char example[] = "{\"kind\": \"verify\", \"case\": \"elastica\"}";
   size_t end = problem->position > 0 ? (size_t)problem->position : 0;
-  size_t start = piece_start(text, end < size ? end : size);
-  const char *advice = piece_advice(text + start, size - start);
+  end = end < size ? end : size;
+  size_t start = piece_start(text, end);
   char piece[64], quoted[70];
-  snprintf(piece, sizeof piece, "%.*s", (int)(end > start && end <= size ? end - start : 0),
-           text + start);
+  snprintf(piece, sizeof piece, "%.*s", (int)(end - start), text + start);
   text_quote(quoted, sizeof quoted, piece);
   switch (json_error_code(problem)) {
   case json_error_out_of_memory:
@@ -141,12 +162,13 @@ static enum status refuse_syntax(const char *text, size_t size, const json_error
     error_set(error, STATUS_SYNTAX, NULL, "the string has a NUL character\ntext without one");
     break;
   case json_error_invalid_utf8:
+    start = text_valid(text, size);
     error_set(error, STATUS_SYNTAX, NULL,
-              "not well-formed JSON: %s\ntext in UTF-8, without a byte order mark", problem->text);
+              "not well-formed JSON: a byte that is no UTF-8, which cannot be decoded\ntext in "
+              "UTF-8");
     break;
   default:
-    error_set(error, STATUS_SYNTAX, NULL, "not well-formed JSON: %s",
-              advice ? advice : problem->text);
+    refuse_piece(text, size, start, end, problem, error);
   }
   place(text, start, error);
   return STATUS_SYNTAX;

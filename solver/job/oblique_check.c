@@ -85,8 +85,8 @@ static enum status refuse_angle(const struct oblique_spec *s, struct error *erro
   }
   return error_set(error, STATUS_GEOMETRY, "/actuator/chamber_angle",
                    "walls at %.6g deg to the cross-section leave no chamber: the first one would "
-                   "take %.6g mm of a length of %.6g mm, where the solid ends leave %.6g mm\nless "
-                   "than %.4f deg from the cross-section\n\"%.0f deg\"",
+                   "take %.6g mm of a length of %.6g mm, where the solid ends leave %.6g mm\nthe "
+                   "limit is %.4f deg from the cross-section\n\"%.0f deg\"",
                    to_deg(s->angle), to_mm(occupied(s, s->angle, 1)), to_mm(s->length), to_mm(room),
                    to_deg(low), floor(to_deg(low)));
 }

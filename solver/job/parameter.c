@@ -141,10 +141,13 @@ static enum status refuse(const struct reader *reader, const char *place, const 
     length += size;
   }
   const char *near = text_nearest(pointer, words, (size_t)count);
-  return error_set(reader->error, STATUS_INVALID, place,
-                   "%s names no dimension or coefficient that this job gives%s%s%s\n%s",
-                   text_quote(quoted, sizeof quoted, pointer), near ? ", did you mean \"" : "",
-                   near ? near : "", near ? "\"?" : "", list);
+  return error_nearest(
+      reader->error,
+      error_set(reader->error, STATUS_INVALID, place,
+                "%s names no dimension or coefficient that this job gives%s%s%s\none of %s",
+                text_quote(quoted, sizeof quoted, pointer), near ? ", did you mean \"" : "",
+                near ? near : "", near ? "\"?" : "", list),
+      near);
 }
 
 static const struct job_parameter *find(const struct job_parameter *list, int count,

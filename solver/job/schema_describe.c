@@ -74,19 +74,37 @@ const char *schema_value_phrase(char *out, const json_t *value) {
 
 /* ---- what is allowed ----------------------------------------------------------------------- */
 
-/* The limits of a size or a number: " from 1 to 64", " of at least 1", " of 2". */
+/* The type that a node names, or that its other keywords are about; NULL when any value will do. */
+static const char *node_type(const struct schema *schema, const json_t *node) {
+  static const struct {
+    const char *keyword, *type;
+  } implied[] = {
+      {"minimum", "number"},          {"maximum", "number"},   {"exclusiveMinimum", "number"},
+      {"exclusiveMaximum", "number"}, {"minLength", "string"}, {"maxLength", "string"},
+      {"minItems", "array"},          {"maxItems", "array"},   {"maxProperties", "object"}};
+  const char *type = json_string_value(schema_rule(schema, node, "type"));
+  for (size_t i = 0; !type && i < sizeof implied / sizeof *implied; i++) {
+    type = schema_rule(schema, node, implied[i].keyword) ? implied[i].type : NULL;
+  }
+  return type;
+}
+
+/* The limits of a size or a number: " from 1 to 64", " of at least 1 item", " of 2 items". */
 static void add_limits(struct phrase *phrase, const json_t *least, const json_t *most,
                        const char *noun) {
   double low = json_number_value(least), high = json_number_value(most);
-  const char *join = noun[0] ? "of " : "from ";
+  bool single = (most ? high : low) == 1.0;
   if (least && most && low == high) {
     add(phrase, " of %.12g%s", low, noun);
   } else if (least && most) {
-    add(phrase, " %s%.12g to %.12g%s", join, low, high, noun);
+    add(phrase, " %s%.12g to %.12g%s", noun[0] ? "of " : "from ", low, high, noun);
   } else if (least) {
     add(phrase, " of at least %.12g%s", low, noun);
   } else if (most) {
     add(phrase, " of at most %.12g%s", high, noun);
+  }
+  if ((least || most) && noun[0] && !single) {
+    add(phrase, "s");
   }
 }
 
@@ -131,17 +149,17 @@ static void add_type(const struct schema *schema, struct phrase *phrase, const j
   switch (type[0]) {
   case 'o':
     add(phrase, "an object");
-    add_limits(phrase, NULL, schema_rule(schema, node, "maxProperties"), " members");
+    add_limits(phrase, NULL, schema_rule(schema, node, "maxProperties"), " member");
     break;
   case 'a':
     add(phrase, "an array");
     add_limits(phrase, schema_rule(schema, node, "minItems"), schema_rule(schema, node, "maxItems"),
-               " items");
+               " item");
     break;
   case 's':
     add(phrase, "a string");
     add_limits(phrase, schema_rule(schema, node, "minLength"),
-               schema_rule(schema, node, "maxLength"), " characters");
+               schema_rule(schema, node, "maxLength"), " character");
     break;
   case 'b':
     add(phrase, "true or false");
@@ -172,7 +190,7 @@ static void add_node(const struct schema *schema, struct phrase *phrase, const j
   const json_t *options = schema_rule(schema, node, "enum");
   const json_t *branches = schema_rule(schema, node, "oneOf");
   const char *unit = json_string_value(schema_rule(schema, node, "x-unit"));
-  const char *type = json_string_value(schema_rule(schema, node, "type"));
+  const char *type = node_type(schema, node);
   const char *before = phrase->text, *join = "";
   if (json_is_string(fixed)) {
     add(phrase, "\"%s\"", json_string_value(fixed));
@@ -235,8 +253,12 @@ static json_t *make_array(const struct schema *schema, const json_t *node) {
 
 /* The node has a type, or takes anything. */
 static json_t *make_value(const struct schema *schema, const json_t *node) {
-  const char *type = json_string_value(schema_rule(schema, node, "type"));
+  const char *type = node_type(schema, node);
+  const char *unit = json_string_value(schema_rule(schema, node, "x-unit"));
   const json_t *least = schema_rule(schema, node, "minimum");
+  if (unit) {
+    return json_sprintf("1 %s", unit);
+  }
   switch (type ? type[0] : 'b') {
   case 'o':
     return make_object(schema, node);

@@ -225,8 +225,9 @@ static json_int_t count_characters(const char *text) {
 
 static enum status refuse_length(struct walk *walk, const json_t *value, const char *problem) {
   char found[SCHEMA_PHRASE];
-  snprintf(found, sizeof found, "a string of %lld characters",
-           (long long)count_characters(json_string_value(value)));
+  json_int_t count = count_characters(json_string_value(value));
+  snprintf(found, sizeof found, "a string of %lld character%s", (long long)count,
+           count == 1 ? "" : "s");
   return schema_refuse(walk, &(struct refusal){.found = found, .problem = problem});
 }
 

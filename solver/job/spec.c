@@ -136,10 +136,10 @@ static enum status read_range(const struct reader *reader, const json_t *metrics
   *from = reader_quantity(reader, json_array_get(range, 0), "kPa");
   *to = reader_quantity(reader, json_array_get(range, 1), "kPa");
   if (*from >= *to) {
-    return error_set(
-        reader->error, STATUS_INVALID, pointer.text,
-        "%.6g kPa is not below %.6g kPa\na range that rises\n[\"0 kPa\", \"%.6g kPa\"]",
-        *from / 1e3, *to / 1e3, pressure_to / 1e3);
+    return error_set(reader->error, STATUS_INVALID, pointer.text,
+                     "%.6g kPa is not below %.6g kPa\nthe first value must be below the "
+                     "second\n[\"0 kPa\", \"%.6g kPa\"]",
+                     *from / 1e3, *to / 1e3, pressure_to / 1e3);
   }
   if (*to > pressure_to * (1.0 + 1e-9)) {
     return error_set(

@@ -59,7 +59,8 @@ static enum status read_closed_form(const struct reader *reader, const json_t *v
   if (!(law->from < law->to)) {
     snprintf(where, sizeof where, "%.150s/range", pointer);
     return error_set(reader->error, STATUS_INVALID, where,
-                     "the range does not rise\na range that rises\n[\"-2 mm\", \"14 mm\"]");
+                     "the range does not rise\nthe first value must be below the second\n[\"-2 "
+                     "mm\", \"14 mm\"]");
   }
   return STATUS_OK;
 }
@@ -198,10 +199,12 @@ static enum status find_law(const struct reader *reader, const struct bistable_s
   }
   char quoted[QUOTED_MAX], known[QUOTED_MAX];
   const char *near = text_nearest(name, words, (size_t)spec->law_count);
-  return error_set(reader->error, STATUS_INVALID, pointer, "there is no law %s\n%s%s",
-                   text_quote(quoted, sizeof quoted, name),
-                   near ? "a name of \"laws\", such as " : "a name of \"laws\"",
-                   near ? text_quote(known, sizeof known, near) : "");
+  return error_nearest(reader->error,
+                       error_set(reader->error, STATUS_INVALID, pointer, "there is no law %s\n%s%s",
+                                 text_quote(quoted, sizeof quoted, name),
+                                 near ? "a name of \"laws\", such as " : "a name of \"laws\"",
+                                 near ? text_quote(known, sizeof known, near) : ""),
+                       near);
 }
 
 static enum status read_stops(const struct reader *reader, const json_t *stops, const char *pointer,
@@ -214,9 +217,10 @@ static enum status read_stops(const struct reader *reader, const json_t *stops, 
     return STATUS_OK;
   }
   snprintf(where, sizeof where, "%.150s/stops", pointer);
-  return error_set(reader->error, STATUS_INVALID, where,
-                   "the stops leave no room, from %.6g mm to %.6g mm\n\"from\" below \"to\"",
-                   1e3 * cell->stop_from, 1e3 * cell->stop_to);
+  return error_set(
+      reader->error, STATUS_INVALID, where,
+      "the stops leave no room, from %.6g mm to %.6g mm\n\"from\" must be below \"to\"",
+      1e3 * cell->stop_from, 1e3 * cell->stop_to);
 }
 
 static enum status read_cell(const struct reader *reader, const json_t *value, const char *pointer,
@@ -336,7 +340,7 @@ static enum status check_whole(const struct reader *reader, const struct bistabl
     const struct supply_spec *supply = &spec->actuator[a].supply;
     if (supply->model == SUPPLY_CHAMBER && spec->initial_pressure <= -supply->atmosphere) {
       return error_set(reader->error, STATUS_INVALID, "/initial/pressure",
-                       "%.6g kPa is vacuum or below it\nmore pressure",
+                       "%.6g kPa is vacuum or below it\nit must be above",
                        1e-3 * spec->initial_pressure);
     }
   }

@@ -32,7 +32,7 @@ static enum status check(const struct reader *reader, const struct hlpv_spec *sp
                          const struct hlpv_control *control) {
   if (!(control->lowest < control->highest)) {
     return error_set(reader->error, STATUS_INVALID, "/control/saturation",
-                     "%.6g kPa is not below %.6g kPa\nlimits that rise\n[\"-5 psi\", \"8 psi\"]",
+                     "%.6g kPa is not below %.6g kPa\nthey must rise\n[\"-5 psi\", \"8 psi\"]",
                      1e-3 * control->lowest, 1e-3 * control->highest);
   }
   double samples = spec->end / control->interval;

@@ -61,10 +61,10 @@ enum status reader_snap_dynamics(const struct reader *reader, const json_t *valu
                      "kPa\", \"0 kPa\", \"20 kPa\", \"40 kPa\", \"60 kPa\"] }");
   }
   if (spread * 0.5 * (pairs - 1) >= 0.9) {
-    return error_set(
-        reader->error, STATUS_INVALID, "/dynamics/trigger_spread",
-        "%d pairs whose triggers differ by %.3g would have one without a trigger\na smaller spread",
-        pairs, spread);
+    return error_set(reader->error, STATUS_INVALID, "/dynamics/trigger_spread",
+                     "%d pairs whose triggers differ by %.3g would have one without a trigger\nthe "
+                     "spread must be smaller",
+                     pairs, spread);
   }
   struct bistable_spec *spec = calloc(1, sizeof *spec);
   if (!spec) {

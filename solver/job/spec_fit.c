@@ -142,7 +142,8 @@ static enum status read_bounds(const struct reader *reader, const json_t *bounds
       char pointer[40];
       snprintf(pointer, sizeof pointer, "/bounds/%s", name);
       return error_set(reader->error, STATUS_INVALID, pointer,
-                       "the lower bound is not below the upper one\nbounds that rise\n%s",
+                       "the lower bound is not below the upper one\nthe lower one must be below "
+                       "the upper one\n%s",
                        exponent ? "[1, 10]" : "[\"0 MPa\", \"1 MPa\"]");
     }
   }
@@ -179,7 +180,8 @@ static enum status read_pair(const struct reader *reader, const json_t *document
   snprintf(pointer, sizeof pointer, "/%s", key);
   return *from < *to ? STATUS_OK
                      : error_set(reader->error, STATUS_INVALID, pointer,
-                                 "%g is not below %g\na range that rises\n%s", *from, *to, example);
+                                 "%g is not below %g\nthe first value must be below the second\n%s",
+                                 *from, *to, example);
 }
 
 static void read_head(const struct reader *reader, const json_t *document, struct job_spec *spec) {

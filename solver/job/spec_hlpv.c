@@ -93,7 +93,8 @@ static enum status read_mode(const struct reader *reader, const char *name, cons
   if (status == STATUS_OK && !(mode->from < mode->to)) {
     json_pointer_key(&pointer, "range");
     status = error_set(reader->error, STATUS_INVALID, pointer.text,
-                       "the range does not rise\na range that rises\n[\"0 psi\", \"8 psi\"]");
+                       "the range does not rise\nthe first value must be below the second\n[\"0 "
+                       "psi\", \"8 psi\"]");
   }
   return status;
 }
@@ -127,10 +128,13 @@ static enum status find_mode(const struct reader *reader, const struct hlpv_spec
   }
   char quoted[QUOTED_MAX], known[QUOTED_MAX];
   const char *near = text_nearest(name, words, (size_t)spec->mode_count);
-  return error_set(reader->error, STATUS_INVALID, pointer,
-                   "there is no mode %s\none of the model's modes, of which %s is one",
-                   text_quote(quoted, sizeof quoted, name),
-                   text_quote(known, sizeof known, near ? near : words[0]));
+  return error_nearest(
+      reader->error,
+      error_set(reader->error, STATUS_INVALID, pointer,
+                "there is no mode %s\none of the model's modes, of which %s is one",
+                text_quote(quoted, sizeof quoted, name),
+                text_quote(known, sizeof known, near ? near : words[0])),
+      near);
 }
 
 /* ---- transitions -------------------------------------------------------------------------- */

@@ -41,7 +41,7 @@ static enum status read_modes(const struct reader *reader, const json_t *modes,
         char pointer[40];
         snprintf(pointer, sizeof pointer, "/modes/%zu/name", index);
         return error_set(reader->error, STATUS_INVALID, pointer,
-                         "two modes have the same name\ndifferent names, for example "
+                         "two modes have the same name\nthe names must differ, for example "
                          "\"compressed\" and \"stretched\"");
       }
     }
@@ -64,7 +64,7 @@ static enum status read_levels(const struct reader *reader, const json_t *levels
       char pointer[40];
       snprintf(pointer, sizeof pointer, "/levels/%d", i);
       return error_set(reader->error, STATUS_INVALID, pointer,
-                       "the levels do not rise\nlevels that rise as the modes do, from short to "
+                       "the levels do not rise\nthey must rise as the modes do, from short to "
                        "long\n[\"21 mm\", \"50 mm\"]");
     }
   }

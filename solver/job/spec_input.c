@@ -46,12 +46,12 @@ static enum status check_times(const struct reader *reader, const struct hlpv_in
     }
     if (i == 0 && input->time[i] != 0.0) {
       return error_set(reader->error, STATUS_INVALID, where,
-                       "%sthe profile begins at %.9g s\na first time of 0 s", place,
+                       "%sthe profile begins at %.9g s\nthe first time must be 0 s", place,
                        input->time[i]);
     }
     if (i > 0 && !(input->time[i] > input->time[i - 1])) {
       return error_set(reader->error, STATUS_INVALID, where,
-                       "%sthe time %.9g s is not after the one before it, %.9g s\ntimes that rise",
+                       "%sthe time %.9g s is not after the one before it, %.9g s\ntimes must rise",
                        place, input->time[i], input->time[i - 1]);
     }
   }

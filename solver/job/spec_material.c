@@ -29,7 +29,7 @@ static enum status read_ogden(const struct reader *reader, const json_t *materia
       char pointer[40];
       snprintf(pointer, sizeof pointer, "/material/alpha/%d", i);
       return error_set(reader->error, STATUS_INVALID, pointer,
-                       "an exponent is 0\na number other than 0\n1.3");
+                       "an exponent is 0\nit must be another number\n1.3");
     }
   }
   return STATUS_OK;

@@ -94,7 +94,7 @@ static enum status read_law(const struct reader *reader, const json_t *law,
       char pointer[40];
       snprintf(pointer, sizeof pointer, "/load/law/%zu", index);
       return error_set(reader->error, STATUS_INVALID, pointer,
-                       "%.6g kPa is not above %.6g kPa\npressures that rise", pressure / 1e3,
+                       "%.6g kPa is not above %.6g kPa\nthey must rise", pressure / 1e3,
                        spec->law[spec->law_count - 1] / 1e3);
     }
     spec->law[spec->law_count++] = pressure;
@@ -192,8 +192,8 @@ static enum status read_calibrate(const struct reader *reader, const json_t *cal
   }
   if (status == STATUS_OK && c->from >= c->to) {
     return error_set(reader->error, STATUS_INVALID, "/calibrate/to",
-                     "%.6g %s is not above %.6g %s\na range that rises", c->to / c->unit_si,
-                     c->unit, c->from / c->unit_si, c->unit);
+                     "%.6g %s is not above %.6g %s\nthe first value must be below the second",
+                     c->to / c->unit_si, c->unit, c->from / c->unit_si, c->unit);
   }
   if (status == STATUS_OK) {
     status = check_end(reader, spec, "from", c->from);

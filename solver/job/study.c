@@ -142,10 +142,11 @@ static bool concerns(const char *pointer, const char *place) {
 
 /* Lets an error of the member name the value of the study that has to change. */
 static enum status refer(const struct draft *draft, struct error *error) {
-  struct error inner = *error;
+  char inner[sizeof error->pointer];
   const struct json_pointer *origin = &draft->at;
   size_t longest = 0;
-  for (int c = 0; c < draft->count && inner.pointer[0]; c++) {
+  reader_copy(inner, sizeof inner, error->pointer);
+  for (int c = 0; c < draft->count && inner[0]; c++) {
     size_t length = strlen(draft->change[c].pointer);
     if (concerns(draft->change[c].pointer, inner) && length >= longest) {
       origin = &draft->change[c].origin;

@@ -228,9 +228,9 @@ static enum status read_tables(struct gathering *g, const json_t *document) {
     for (size_t i = 0; i < index && status == STATUS_OK; i++) {
       if (strcmp(json_string_value(json_object_get(json_array_get(tables, i), "name")), name) ==
           0) {
-        status = error_set(
-            g->error, STATUS_INVALID, pointer,
-            "two tables have the same name\ndifferent names, for example \"run 1\" and \"run 2\"");
+        status = error_set(g->error, STATUS_INVALID, pointer,
+                           "two tables have the same name\nthe names must differ, for example "
+                           "\"run 1\" and \"run 2\"");
       }
     }
     snprintf(pointer, sizeof pointer, "/tables/%zu/data/csv", index);

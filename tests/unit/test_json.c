@@ -12,9 +12,9 @@ static const struct {
 } malformed[] = {
     {"", 1, 0, "not well-formed"},
     {"{", 1, 0, "not well-formed"},
-    {"[1,]", 1, 4, "']'"},
-    {"{\"a\": 1,\n \"b\": 2,\n  \"a\": 3}", 3, 5, "duplicate object key"},
-    {"{\"x\": {\"a\": 1, \"a\": 1}}", 1, 18, "duplicate object key"},
+    {"[1,]", 1, 4, "a bracket ends the array where a value is due: no comma before it"},
+    {"{\"a\": 1,\n \"b\": 2,\n  \"a\": 3}", 3, 3, "duplicate object key"},
+    {"{\"x\": {\"a\": 1, \"a\": 1}}", 1, 16, "duplicate object key"},
     {"[NaN]", 1, 0, "NaN"},
     {"[Infinity]", 1, 0, "Infinity"},
     {"[1e400]", 1, 0, "overflow"},
@@ -37,8 +37,7 @@ START_TEST(refuses_malformed_text) {
   ck_assert_msg(error.line == malformed[_i].line, "%s: line %d", text, error.line);
   ck_assert_int_ge(error.column, 1);
   if (malformed[_i].column > 0) {
-    ck_assert_msg(abs(error.column - malformed[_i].column) <= 1, "%s: column %d", text,
-                  error.column);
+    ck_assert_msg(error.column == malformed[_i].column, "%s: column %d", text, error.column);
   }
 }
 END_TEST

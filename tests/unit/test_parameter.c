@@ -157,7 +157,7 @@ static const struct refusal refusals[] = {
     {"/sensitivity", "{\"parameters\": [\"/actuator/gap_wall\"]}", STATUS_INVALID,
      "/sensitivity/parameters/0", "names no dimension or coefficient that this job gives"},
     {"/sensitivity", "{\"parameters\": [\"/load/pressure/to\"]}", STATUS_INVALID,
-     "/sensitivity/parameters/0", "they are /actuator/length, /actuator/width"},
+     "/sensitivity/parameters/0", "one of /actuator/length, /actuator/width"},
     {"/sensitivity", "{\"parameters\": [\"/material/C/3\"]}", STATUS_INVALID,
      "/sensitivity/parameters/0", "\"/material/C/3\""},
     {"/sensitivity", "{\"parameters\": [\"/material/C/0\", \"/material/C/0\"]}", STATUS_INVALID,
@@ -166,7 +166,8 @@ static const struct refusal refusals[] = {
     {"/sensitivity", "{\"parameters\": [3]}", STATUS_INVALID, "/sensitivity/parameters/0",
      "string"},
     {"/sensitivity", "{\"parameter\": []}", STATUS_INVALID, "/sensitivity/parameter", "parameters"},
-    {"/sensitivity", "[\"/material/C/0\"]", STATUS_INVALID, "/sensitivity", "boolean or object"},
+    {"/sensitivity", "[\"/material/C/0\"]", STATUS_INVALID, "/sensitivity",
+     "true or false or an object"},
 };
 enum { REFUSALS = sizeof refusals / sizeof *refusals };
 

@@ -195,7 +195,7 @@ static const struct {
     {NULL,
      "[{\"cells\": [{\"law\": \"pair\", \"mass\": \"12 g\", \"stops\": {\"from\": \"5 mm\", "
      "\"to\": \"1 mm\", \"stiffness\": \"1 N/m\"}}]}]",
-     NULL, "/actuators/0/cells/0/stops", "leave room"},
+     NULL, "/actuators/0/cells/0/stops", "leave no room"},
     {NULL,
      "[{\"cells\": [{\"law\": \"pair\", \"mass\": \"12 g\"}], \"pneumatics\": {\"supply\": "
      "\"chamber\", \"dead_volume\": \"-1 ml\", \"conductance\": \"1 ml/s/kPa\"}}]",
@@ -203,7 +203,7 @@ static const struct {
     {NULL,
      "[{\"cells\": [{\"law\": \"pair\", \"mass\": \"12 g\"}], \"pneumatics\": {\"supply\": "
      "\"chamber\", \"dead_volume\": \"1 ml\"}}]",
-     NULL, "/actuators/0/pneumatics", "needs \"conductance\""},
+     NULL, "/actuators/0/pneumatics", "lacks a key: \"conductance\""},
     {NULL,
      "[{\"cells\": [{\"law\": \"pair\", \"mass\": \"12 g\"}], \"pneumatics\": {\"supply\": "
      "\"direct\", \"exponent\": 1}}]",
@@ -223,7 +223,7 @@ static const struct {
      "/laws/pair/per", "no unit of the elongation"},
     {"\"laws\": {\"pair\": {\"per\": \"mm\", \"coefficients\": [\"0 N\", \"1 N\"], \"range\": [\"2 "
      "mm\", \"1 mm\"]}},",
-     NULL, NULL, "/laws/pair/range", "must rise"},
+     NULL, NULL, "/laws/pair/range", "must be below"},
     {TABLE(LEVEL(0, EIGHT)), NULL, NULL, "/laws/pair/table", ""},
     {TABLE(LEVEL(0, EIGHT) "," LEVEL(0, EIGHT)), NULL, NULL, "/laws/pair/table/1", "must rise"},
     {TABLE(LEVEL(10, EIGHT) "," LEVEL(0, EIGHT)), NULL, NULL, "/laws/pair/table/1",

@@ -169,17 +169,17 @@ static const struct {
      "[]", NULL, NULL, "/model/modes/low/stiffness", "stiffness"},
     {"{\"low\": {\"stiffness\": \"1 N/m\", \"damping\": \"1 N s/m\", \"alpha\": \"-1 1/s\", "
      "\"beta\": \"1 1/s\", \"range\": [\"2 kPa\", \"1 kPa\"]}}",
-     "[]", NULL, NULL, "/model/modes/low/range", "must rise"},
+     "[]", NULL, NULL, "/model/modes/low/range", "must be below"},
     {NULL,
      "[{\"from\": \"low\", \"to\": \"hihg\", \"when\": {\"h\": \"1 mm\", \"direction\": "
      "\"rising\"}}]",
      NULL, NULL, "/model/transitions/0/to", "\"high\""},
     {NULL, "[{\"from\": \"low\", \"to\": \"high\", \"when\": {\"direction\": \"rising\"}}]", NULL,
-     NULL, "/model/transitions/0/when", "not 0"},
+     NULL, "/model/transitions/0/when", "0 quantities"},
     {NULL,
      "[{\"from\": \"low\", \"to\": \"high\", \"when\": {\"h\": \"1 mm\", \"pressure\": \"1 "
      "kPa\", \"direction\": \"rising\"}}]",
-     NULL, NULL, "/model/transitions/0/when", "not 2"},
+     NULL, NULL, "/model/transitions/0/when", "2 quantities"},
     {"{\"low\": {\"stiffness\": {\"per\": \"psi\", \"states\": [[\"1 kPa\", 0.5]]}, \"damping\": "
      "\"1 N s/m\", \"alpha\": \"-1 1/s\", \"beta\": \"1 1/s\"}}",
      "[]", NULL, NULL, "/model/modes/low/stiffness/states/0", "rest_length"},
@@ -203,12 +203,12 @@ static const struct {
     {NULL, NULL, "{\"mode\": \"low\", \"h\": \"15 mm\"}", NULL, "/initial/h", "beyond the guard"},
     {NULL, NULL, "{\"mode\": \"low\", \"h\": \"14.06 mm\", \"velocity\": \"1 m/s\"}", NULL,
      "/initial/h", "beyond the guard"},
-    {NULL, NULL, NULL, "\"input\": {}, \"end\": \"1 s\"", "/input", "not 0"},
+    {NULL, NULL, NULL, "\"input\": {}, \"end\": \"1 s\"", "/input", "there are 0 profiles"},
     {NULL, NULL, NULL,
      "\"input\": {\"hold\": [[\"0 s\", \"1 kPa\"]], \"linear\": [[\"0 s\", \"1 kPa\"]]}, \"end\": "
      "\"1 "
      "s\"",
-     "/input", "not 2"},
+     "/input", "there are 2 profiles"},
     {NULL, NULL, NULL, "\"input\": {\"hold\": [[\"1 s\", \"1 kPa\"]]}, \"end\": \"1 s\"",
      "/input/hold/0/0", "must be 0 s"},
     {NULL, NULL, NULL,
@@ -241,7 +241,7 @@ static const struct {
     /* 24999 intervals of 15 s are 1666.6 Hz. */
     {NULL, NULL, NULL,
      "\"input\": {\"hold\": [[\"0 s\", \"1 kPa\"]]}, \"end\": \"15 s\", \"sample_rate\": \"2 kHz\"",
-     "/sample_rate", "\"1666 Hz\" keeps to"},
+     "/sample_rate", "at most 25000; for example \"1666 Hz\""},
     {NULL, NULL, NULL, "\"input\": {\"hold\": [[\"0 s\", \"1 kPa\"]]}, \"end\": \"-1 s\"", "/end",
      "at least"},
 };

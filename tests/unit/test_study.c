@@ -278,7 +278,7 @@ static const struct {
          "side_wall") "]"),
      STATUS_TOO_LARGE, "/parameters", "1000"},
     {LIST("{\"/actuator/taper/top\":2}"), STATUS_INVALID, "/designs/1/set/~1actuator~1taper~1top",
-     "write \"2 deg\""},
+     "for example \"2 deg\""},
     {LIST("{\"/actuator/hight\":\"2 mm\"}"), STATUS_INVALID, "/designs/1/set/~1actuator~1hight",
      "did you mean \"height\""},
     {LIST("{\"/actuator/length\":\"9 mm\"}"), STATUS_GEOMETRY, "/designs/1/set/~1actuator~1length",
@@ -292,7 +292,7 @@ static const struct {
     {LIST("{\"/actuator/chambers/1/count\":1}"), STATUS_INVALID,
      "/designs/1/set/~1actuator~1chambers~11~1count", "leads nowhere"},
     {LIST("{\"/load/gravity/3\":0}"), STATUS_INVALID, "/designs/1/set/~1load~1gravity~13",
-     "the array has 3"},
+     "one of the 3 items"},
     {LIST("{\"/kind\":\"study\"}"), STATUS_INVALID, "/designs/1/set/~1kind",
      "the kind of its base"},
     {LIST("{\"/material\":null}"), STATUS_INVALID, "/designs/1", "\"material\" is missing"},
@@ -306,7 +306,7 @@ static const struct {
      STATUS_INVALID, "/ranking/weights", "1.1"},
     {STUDY("\"sampling\":\"list\",\"designs\":[{\"set\":{}}],\"ranking\":{\"stations\":[\"8 mm\","
            "\"30 mm\"]}"),
-     STATUS_INVALID, "/ranking/stations/1", "24 mm long"},
+     STATUS_INVALID, "/ranking/stations/1", "at most its length, 24 mm"},
     {HYBRIDS("\"sampling\":\"grid\",\"parameters\":[" MASSES("\"1 g\",\"-1 g\"") "]"),
      STATUS_INVALID, "/parameters/0/values/1", "member \"mass -1 g\", /model/mass: "},
     {HYBRIDS("\"sampling\":\"grid\",\"parameters\":[" MASSES(

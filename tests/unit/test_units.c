@@ -79,8 +79,8 @@ END_TEST
 static const struct {
   const char *text, *unit, *phrase;
 } bad[] = {
-    {"50", "kPa", "write \"50 kPa\""},
-    {"50 ", "kPa", "write \"50 kPa\""},
+    {"50", "kPa", "for example \"50 kPa\""},
+    {"50 ", "kPa", "for example \"50 kPa\""},
     {"", "kPa", "\"1 kPa\""},
     {"kPa", "kPa", "decimal number"},
     {" 50 kPa", "kPa", "decimal number"},
