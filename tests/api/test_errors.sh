@@ -31,6 +31,17 @@ fetch POST /api/v1/jobs --data-binary "$(printf '{\n  "kind": "response",\n  oop
 check "the line of a syntax error" 3 "$(field .line)"
 check_match "an unknown key names the nearest" top_wall \
   "$(curl -s --data-binary "$(job '.actuator.top_wal = "2 mm"')" "$URL/api/v1/jobs" | jq -r .detail)"
+fetch POST /api/v1/jobs:validate --data-binary "$(job '.accuracy = "fats"')"
+check "the parts of the sentence" '"fats"/"fast", "standard" or "fine"/fast/fast' \
+  "$(field '[.found, .allowed, .nearest, .example] | join("/")')"
+check_match "its place" "^/accuracy .line [0-9]+, column [0-9]+.: " "$(field .detail)"
+job '.accuracy = "fats"' > "$WORK/wrong.json"
+check "the same words on the command line" "pneulab-solve: $(field .detail)" \
+  "$(./pneulab-solve "$WORK/wrong.json" 2>&1 > "$WORK/refusal")"
+check "and in its document" "$(field '[.pointer, .line, .column, .found, .allowed, .example]')" \
+  "$(jq -c '.error | [.pointer, .line, .column, .found, .allowed, .example]' "$WORK/refusal")"
+fetch POST /api/v1/jobs --data-binary "$(job '.actuator.height = "3 mm"')"
+check_match "what a body allows" 'at least' "$(field .allowed)"
 check "nothing was stored" 0 "$(sql 'select count(*) from job')"
 
 head -c 2097152 /dev/zero | tr '\0' ' ' > "$WORK/big"

@@ -253,7 +253,7 @@ static const struct refusal bad_measured[] = {
     {"/measured", MEASURED("p,a\\n0,0\\n", P, P), STATUS_INVALID, "/measured/columns/angle/unit",
      "\"psi\" is no unit of the angle"},
     {"/measured", MEASURED("p,b\\n0,0\\n", P, A), STATUS_INVALID, "/measured/columns/angle/name",
-     "has \"p\", \"b\""},
+     "has others: \"p\", \"b\""},
     {"/measured", MEASURED("p,a\\n0,0\\n1,x\\n", P, A), STATUS_INVALID, "/measured/data/csv",
      "line 3"},
     {"/measured", MEASURED("p,a\\n100,1\\n200,2\\n", P, A), STATUS_INVALID, "/measured/data/csv",

@@ -83,7 +83,7 @@ static const struct {
     {BODY("260 mm", "5 deg", ",\"angle_from\":\"long-axis\""), "{\"to\":\"80 kPa\"}",
      STATUS_GEOMETRY, "/actuator/chamber_angle", "at least 10 deg from the long axis"},
     {BODY("60 mm", "75 deg", ""), "{\"to\":\"80 kPa\"}", STATUS_GEOMETRY, "/actuator/chamber_angle",
-     "the limit is 70.4096 deg, for example \"70 deg\""},
+     "the limit is 70.4096 deg from the cross-section; for example \"70 deg\""},
     {BODY("10 mm", "45 deg", ""), "{\"to\":\"80 kPa\"}", STATUS_GEOMETRY, "/actuator/length",
      "at least 11 mm"},
     {BODY("260 mm", "45 deg", ",\"chambers\":21"), "{\"to\":\"80 kPa\"}", STATUS_GEOMETRY,
