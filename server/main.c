@@ -14,10 +14,12 @@
 #include "server/base/clock.h"
 #include "server/base/file.h"
 #include "server/base/log.h"
+#include "server/base/notify.h"
 #include "server/base/options.h"
 #include "server/exec/pool.h"
 #include "server/http/access.h"
 #include "server/http/feed.h"
+#include "server/http/record.h"
 #include "server/http/server.h"
 #include "server/http/waiters.h"
 #include "server/store/store.h"
@@ -76,6 +78,7 @@ static enum status parts_open(const struct options *options, struct parts *parts
   struct service *service = &parts->service;
   int64_t recovered = 0;
   service->data = options->data;
+  service->isolation = &parts->isolation;
   service->started_ms = clock_monotonic_ms();
   enum status status = access_create(options, &service->access, error);
   if (status == STATUS_OK) {
@@ -92,6 +95,9 @@ static enum status parts_open(const struct options *options, struct parts *parts
   }
   if (status == STATUS_OK) {
     status = waiters_create(&service->waiters, error);
+  }
+  if (status == STATUS_OK) {
+    status = http_meter_create(&service->meter, error);
   }
   if (status == STATUS_OK) {
     status = feed_create(service->store, options->subscribers, &service->feed, error);
@@ -127,6 +133,7 @@ static void parts_close(struct parts *parts) {
   server_destroy(parts->server); /* its handlers ask the pool */
   pool_destroy(parts->service.pool);
   feed_destroy(parts->service.feed);
+  http_meter_destroy(parts->service.meter);
   isolation_release(&parts->isolation);
   waiters_destroy(parts->service.waiters);
   job_reader_destroy(parts->service.reader);
@@ -159,6 +166,20 @@ static void drain(struct parts *parts, const sigset_t *signals, double timeout_s
   }
 }
 
+/* Waits for the signal to end, telling a watchdog meanwhile that the database answers. */
+static int await_signal(struct parts *parts, const sigset_t *signals) {
+  int64_t pace_ms = notify_watchdog_ms();
+  struct timespec pace = {.tv_sec = (time_t)(pace_ms / 1000),
+                          .tv_nsec = (long)(pace_ms % 1000) * 1000000L};
+  int64_t counts[JOB_STATE_COUNT];
+  int received;
+  while ((received = sigtimedwait(signals, NULL, pace_ms > 0 ? &pace : NULL)) <= 0) {
+    store_counts(parts->service.store, counts, NULL); /* hangs when the store does */
+    notify_send("WATCHDOG=1");
+  }
+  return received;
+}
+
 static int serve(const struct options *options) {
   struct parts parts = {.lock = -1};
   struct error error;
@@ -179,9 +200,12 @@ static int serve(const struct options *options) {
     printf("listening on http%s://%s%s%s:%u\n", options->tls_certificate[0] ? "s" : "",
            six ? "[" : "", options->listen.host, six ? "]" : "", server_port(parts.server));
     fflush(stdout);
-    while (sigwait(&signals, &received) == 0 && received == SIGHUP) {
+    notify_send("READY=1");
+    while ((received = await_signal(&parts, &signals)) == SIGHUP) {
       access_reload(parts.service.access);
     }
+    log_event(LOG_LEVEL_INFO, "signal", LOG_TEXT("name", sigabbrev_np(received)));
+    notify_send("STOPPING=1");
     drain(&parts, &signals, options->drain_timeout_s);
   }
   parts_close(&parts);
@@ -207,5 +231,6 @@ int main(int argc, char **argv) {
     puts("pneulabd " PNEULAB_VERSION);
     return EXIT_SUCCESS;
   }
+  log_configure((enum log_level)options.log_level, (enum log_format)options.log_format);
   return serve(&options);
 }

@@ -16,6 +16,12 @@ int64_t clock_monotonic_ms(void) {
   return clock_read_ms(CLOCK_MONOTONIC);
 }
 
+int64_t clock_monotonic_us(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
+}
+
 struct timespec clock_deadline(int64_t delay_ms) {
   int64_t at = clock_monotonic_ms() + delay_ms;
   return (struct timespec){.tv_sec = (time_t)(at / 1000), .tv_nsec = (long)(at % 1000) * 1000000L};

@@ -13,6 +13,9 @@ int64_t clock_unix_ms(void);
 /* Milliseconds of a clock that never jumps; only differences mean something. */
 int64_t clock_monotonic_ms(void);
 
+/* The same clock in microseconds. */
+int64_t clock_monotonic_us(void);
+
 /* The moment `delay_ms` from now on the monotonic clock, for timed waits. */
 struct timespec clock_deadline(int64_t delay_ms);
 

@@ -58,6 +58,9 @@ static const struct option_row rows[] = {
         "of them from one address"),
     ROW(COUNT, 0, "subscribers", "N", subscribers, 0, 10000, "200",
         "clients that follow the events at the same time"),
+    ROW(WORD, 0, "log-level", "error|warning|info|request", log_level, 0, 0, "info",
+        "what is logged; request: every request too"),
+    ROW(WORD, 0, "log-format", "text|json", log_format, 0, 0, "text", "of the log"),
     ROW(ACTION, 'h', "help", NULL, action, OPTIONS_HELP, 0, NULL, "print this text"),
     ROW(ACTION, 'V', "version", NULL, action, OPTIONS_VERSION, 0, NULL, "print the version"),
 };

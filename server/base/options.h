@@ -34,6 +34,8 @@ struct options {
   double request_rate_hz;         /* of a token or an address; 0: any, -1: by the address */
   double body_timeout_s;          /* for one request's body */
   unsigned connections;           /* in all, beside those of subscribers */
+  unsigned log_level;             /* enum log_level */
+  unsigned log_format;            /* enum log_format */
   unsigned action;                /* enum options_action */
 };
 

@@ -114,11 +114,14 @@ static void isolation_report(const struct isolation *isolation, char *missing, s
   if (length > 1) {
     missing[length - 2] = '\0';
   }
-  log_line("isolation of workers: %s%s%s%slimits, no privileges, clean environment; %s%s",
+  char sentence[320];
+  snprintf(sentence, sizeof sentence,
+           "isolation of workers: %s%s%s%slimits, no privileges, clean environment; %s%s",
            isolation->landlock ? text : "", isolation->seccomp ? "seccomp (no network), " : "",
            isolation->namespaces ? "process namespace, " : "",
            isolation->processes ? "number of processes, " : "",
            length ? "not on this kernel: " : "nothing is missing", missing);
+  log_write(length ? LOG_LEVEL_WARNING : LOG_LEVEL_INFO, sentence, NULL, 0);
 }
 
 enum status isolation_open(const struct isolation_settings *settings, struct isolation *isolation,
@@ -134,7 +137,7 @@ enum status isolation_open(const struct isolation_settings *settings, struct iso
   enum status status = paths_take(settings, isolation, error);
   if (status != STATUS_OK || settings->mode == ISOLATION_OFF) {
     if (status == STATUS_OK) {
-      log_line("isolation of workers is off: only limits hold");
+      log_write(LOG_LEVEL_WARNING, "isolation of workers is off: only limits hold", NULL, 0);
     }
     return status;
   }

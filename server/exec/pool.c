@@ -1,12 +1,16 @@
 #include "server/exec/pool.h"
 
+#include <errno.h>
 #include <pthread.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 #include "server/base/clock.h"
 #include "server/base/log.h"
 #include "server/exec/run.h"
+#include "server/exec/tally.h"
 
 enum { IDLE_MS = 500, STORE_RETRY_MS = 1000 };
 
@@ -27,9 +31,15 @@ struct pool {
   bool draining, stopping, aborting;
   unsigned wakes; /* counts pool_wake, so that none is missed */
   struct pool_statistics statistics;
+  struct tally *tally; /* has a lock of its own */
   unsigned thread_count;
   struct slot slots[];
 };
+
+static void slot_complain(const struct slot *slot, const struct error *error) {
+  log_event(LOG_LEVEL_ERROR, error->message, LOG_NUMBER("job", slot->job_id),
+            LOG_NUMBER("attempt", slot->attempt));
+}
 
 static enum status slot_started(void *context, int64_t pid) {
   struct slot *slot = context;
@@ -39,7 +49,7 @@ static enum status slot_started(void *context, int64_t pid) {
   if (status == STATUS_OK) {
     slot->pool->settings.changed(slot->pool->settings.context, slot->job_id);
   } else if (status != STATUS_CONFLICT) {
-    log_line("job %lld: %s", (long long)slot->job_id, error.message);
+    slot_complain(slot, &error);
     status = STATUS_OK; /* the start could not be noted: no reason to end the worker */
   }
   return status;
@@ -107,8 +117,7 @@ static enum status slot_store(struct slot *slot, struct outcome *outcome, enum j
   enum status status;
   while ((status = store_attempt_finish(store, &outcome->attempt, state, error)) == STATUS_IO ||
          status == STATUS_NO_MEMORY) {
-    log_line("job %lld attempt %lld: %s", (long long)slot->job_id, (long long)slot->attempt,
-             error->message);
+    slot_complain(slot, error);
     if (!slot_pause(slot)) {
       return status;
     }
@@ -120,20 +129,54 @@ static enum status slot_store(struct slot *slot, struct outcome *outcome, enum j
   return status;
 }
 
-static void slot_finish(struct slot *slot, struct outcome *outcome) {
-  struct error error;
-  enum job_state state;
-  if (slot_store(slot, outcome, &state, &error) != STATUS_OK) {
-    log_line("job %lld attempt %lld: %s", (long long)slot->job_id, (long long)slot->attempt,
-             error.message);
-    return;
+/* What is known of the job when its attempt starts, for the counts. */
+struct slot_job {
+  char kind[40];
+  int64_t start_ms; /* monotonic */
+};
+
+static struct slot_job slot_job_read(struct slot *slot, const struct claim *claim) {
+  struct slot_job job = {.start_ms = clock_monotonic_ms()};
+  struct job_record record;
+  if (store_job(slot->pool->settings.store, claim->job_id, &record, NULL) == STATUS_OK) {
+    snprintf(job.kind, sizeof job.kind, "%s", record.kind);
+    if (claim->attempt == 1) {
+      tally_waited(slot->pool->tally, 1e-3 * (double)(record.started_ms - record.created_ms));
+    }
+    job_record_clear(&record);
   }
-  log_line("job %lld attempt %lld: %s %s", (long long)slot->job_id, (long long)slot->attempt,
-           job_state_word(state), outcome->attempt.reason_code);
+  return job;
+}
+
+static void slot_count(struct slot *slot, const struct slot_job *job, const struct outcome *outcome,
+                       enum job_state state) {
+  struct tally_attempt ended = {.kind = job->kind,
+                                .state = job_state_word(state),
+                                .reason = outcome->attempt.reason_code,
+                                .final = job_state_terminal(state),
+                                .wall_s = 1e-3 * (double)(clock_monotonic_ms() - job->start_ms),
+                                .peak_memory_MB = outcome->attempt.peak_memory_MB};
+  tally_ended(slot->pool->tally, &ended);
   pthread_mutex_lock(&slot->pool->mutex);
   slot->pool->statistics.attempts_ended[outcome->attempt.end]++;
   slot->pool->statistics.cpu_s += outcome->attempt.cpu_s;
   pthread_mutex_unlock(&slot->pool->mutex);
+  log_event(state == JOB_STATE_FAILED ? LOG_LEVEL_WARNING : LOG_LEVEL_INFO, "attempt ended",
+            LOG_NUMBER("job", slot->job_id), LOG_NUMBER("attempt", slot->attempt),
+            LOG_TEXT("kind", ended.kind), LOG_TEXT("state", ended.state),
+            LOG_TEXT("reason", ended.reason), LOG_NUMBER("wall_s", ended.wall_s),
+            LOG_NUMBER("cpu_s", outcome->attempt.cpu_s),
+            LOG_NUMBER("memory_MB", ended.peak_memory_MB));
+}
+
+static void slot_finish(struct slot *slot, const struct slot_job *job, struct outcome *outcome) {
+  struct error error;
+  enum job_state state;
+  if (slot_store(slot, outcome, &state, &error) == STATUS_OK) {
+    slot_count(slot, job, outcome, state);
+  } else {
+    slot_complain(slot, &error);
+  }
 }
 
 /* Processes that the worker of a study may run at a time: a share of the cores, so that all workers
@@ -159,6 +202,7 @@ static void slot_run(struct slot *slot, const struct claim *claim) {
   struct outcome outcome;
   char directory[RUN_DIRECTORY_SIZE + 8];
   slot_assign(slot, claim);
+  struct slot_job job = slot_job_read(slot, claim);
   settings->changed(settings->context, claim->job_id);
   run_attempt(&run, claim, &hooks, &outcome);
   run_directory(claim->job_id, claim->attempt, directory);
@@ -166,7 +210,7 @@ static void slot_run(struct slot *slot, const struct claim *claim) {
   outcome.attempt.attempt = claim->attempt;
   outcome.attempt.directory = directory;
   outcome.attempt.retry_delay_ms = (int64_t)(1000 * settings->retry_delay_s);
-  slot_finish(slot, &outcome);
+  slot_finish(slot, &job, &outcome);
   outcome_clear(&outcome);
   slot_assign(slot, NULL);
   settings->changed(settings->context, claim->job_id);
@@ -202,7 +246,7 @@ static void *slot_main(void *context) {
       pthread_mutex_unlock(&slot->pool->mutex);
       claimed = false;
       if (open && store_claim(slot->pool->settings.store, &claim, &claimed, &error) != STATUS_OK) {
-        log_line("cannot take a job: %s", error.message);
+        log_event(LOG_LEVEL_ERROR, "cannot take a job", LOG_TEXT("error", error.message));
       }
       if (claimed) {
         slot_run(slot, &claim);
@@ -227,6 +271,10 @@ enum status pool_create(const struct pool_settings *settings, struct pool **pool
   pthread_mutex_init(&made->mutex, NULL);
   pthread_cond_init(&made->work, &monotonic);
   pthread_condattr_destroy(&monotonic);
+  if (tally_create(&made->tally, error) != STATUS_OK) {
+    pool_destroy(made);
+    return error->status;
+  }
   for (unsigned i = 0; i < settings->workers; i++) {
     made->slots[i].pool = made;
     if (pthread_create(&made->slots[i].thread, NULL, slot_main, &made->slots[i]) != 0) {
@@ -275,6 +323,21 @@ void pool_statistics(struct pool *pool, struct pool_statistics *statistics) {
   pthread_mutex_unlock(&pool->mutex);
 }
 
+enum status pool_check(const struct pool *pool, struct error *error) {
+  const char *programs[] = {pool->settings.isolation->launcher, pool->settings.solver};
+  for (size_t i = 0; i < sizeof programs / sizeof *programs; i++) {
+    if (strchr(programs[i], '/') && access(programs[i], X_OK) != 0) {
+      return error_set(error, STATUS_NOT_FOUND, NULL, "No worker can be started: %s: %s.",
+                       programs[i], strerrordesc_np(errno));
+    }
+  }
+  return STATUS_OK;
+}
+
+struct tally *pool_tally(struct pool *pool) {
+  return pool->tally;
+}
+
 void pool_drain(struct pool *pool) {
   pthread_mutex_lock(&pool->mutex);
   pool->draining = true;
@@ -305,6 +368,7 @@ void pool_destroy(struct pool *pool) {
   for (unsigned i = 0; i < pool->thread_count; i++) {
     pthread_join(pool->slots[i].thread, NULL);
   }
+  tally_destroy(pool->tally);
   pthread_cond_destroy(&pool->work);
   pthread_mutex_destroy(&pool->mutex);
   free(pool);

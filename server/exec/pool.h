@@ -11,6 +11,7 @@
 #include "server/store/store.h"
 
 struct pool;
+struct tally;
 
 struct pool_settings {
   struct store *store;
@@ -50,6 +51,12 @@ void pool_cancel(struct pool *pool, int64_t job_id);
 bool pool_progress(struct pool *pool, int64_t job_id, struct progress *progress);
 
 void pool_statistics(struct pool *pool, struct pool_statistics *statistics);
+
+/* Whether workers can be started: the launcher and the solver are there. STATUS_NOT_FOUND. */
+enum status pool_check(const struct pool *pool, struct error *error);
+
+/* What the workers' ends were, owned by the pool. */
+struct tally *pool_tally(struct pool *pool);
 
 /* No job is started any more. */
 void pool_drain(struct pool *pool);

@@ -136,8 +136,8 @@ void run_attempt(const struct run_settings *settings, const struct claim *claim,
     status = run_start(settings, &paths, time_limit_s, &process, &error);
   }
   if (status != STATUS_OK) {
-    log_line("job %lld attempt %lld: %s", (long long)claim->job_id, (long long)claim->attempt,
-             error.message);
+    log_event(LOG_LEVEL_ERROR, error.message, LOG_NUMBER("job", claim->job_id),
+              LOG_NUMBER("attempt", claim->attempt));
     outcome_not_started(outcome, &error);
     return;
   }

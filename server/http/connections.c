@@ -186,3 +186,13 @@ unsigned connections_busy(struct connections *connections) {
   pthread_mutex_unlock(&connections->mutex);
   return busy;
 }
+
+unsigned connections_count(struct connections *connections) {
+  unsigned count = 0;
+  pthread_mutex_lock(&connections->mutex);
+  for (const struct connection *at = connections->first; at; at = at->next) {
+    count++;
+  }
+  pthread_mutex_unlock(&connections->mutex);
+  return count;
+}

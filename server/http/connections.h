@@ -43,6 +43,8 @@ unsigned connections_party(struct connections *connections, struct connection *c
                            const char *party);
 /* What a connection was made with. NULL is fine. */
 struct tls *connection_tls(const struct connection *connection);
+/* Number of open connections. */
+unsigned connections_count(struct connections *connections);
 /* Number of connections with a request that is not answered yet. */
 unsigned connections_busy(struct connections *connections);
 

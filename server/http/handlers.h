@@ -32,7 +32,10 @@ handler catalogue_materials, catalogue_schema, catalogue_openapi_json, catalogue
 handler database_show;
 
 /* health.c */
-handler health_live, health_ready, health_metrics;
+handler health_live, health_ready;
+
+/* metrics.c */
+handler metrics_show;
 
 /* session.c: signing in and out with a browser */
 handler session_open, session_close, session_caller;

@@ -1,6 +1,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "server/base/log.h"
 #include "server/http/handlers.h"
 #include "server/http/job_view.h"
 #include "solver/job/json.h"
@@ -63,6 +64,10 @@ void jobs_submit(struct request *request, struct reply *reply) {
   if (status != STATUS_OK) {
     reply_error(reply, &error);
     return;
+  }
+  if (!replayed) {
+    log_event(LOG_LEVEL_INFO, "job submitted", LOG_NUMBER("job", id),
+              LOG_TEXT("caller", request->caller.name), LOG_TEXT("request", request->id));
   }
   pool_wake(service->pool);
   job_view_reply_waiting(request, reply, 202, id, true);

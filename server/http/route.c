@@ -1,5 +1,6 @@
 #include "server/http/route.h"
 
+#include <assert.h>
 #include <string.h>
 
 #include "server/http/handlers.h"
@@ -41,7 +42,7 @@ static const struct route {
     {HTTP_GET, ROLE_NONE, "openapi.yaml", catalogue_openapi_yaml, ""},
     {HTTP_GET, ROLE_NONE, "healthz", health_live, ""},
     {HTTP_GET, ROLE_NONE, "readyz", health_ready, ""},
-    {HTTP_GET, ROLE_READ, "metrics", health_metrics, ""},
+    {HTTP_GET, ROLE_READ, "metrics", metrics_show, ""},
     {HTTP_GET, ROLE_READ, "api/v1/caller", session_caller, ""},
     {HTTP_POST, ROLE_NONE, "sign-in", session_open, "next"},
     {HTTP_POST, ROLE_NONE, "sign-out", session_close, ""},
@@ -101,6 +102,7 @@ handler *route_find(struct request *request, struct reply *reply) {
     if (routes[i].method == request->method) {
       request->known_query = routes[i].query;
       request->least_role = routes[i].role;
+      request->route = ROUTE_FIRST + (unsigned)i;
       return routes[i].handle;
     }
     strcat(allowed, allowed[0] ? ", " : "");
@@ -110,6 +112,7 @@ handler *route_find(struct request *request, struct reply *reply) {
   }
   if (!allowed[0] && page_exists(request)) {
     if (request->method == HTTP_GET) {
+      request->route = ROUTE_PAGES;
       request->least_role = ROLE_NONE; /* pages are the program's own: no data is in them */
       return page_show;
     }
@@ -123,3 +126,23 @@ handler *route_find(struct request *request, struct reply *reply) {
   }
   return NULL;
 }
+
+bool route_name(unsigned number, const char **method, const char **pattern) {
+  if (number < ROUTE_FIRST) {
+    *method = number == ROUTE_PAGES ? "GET" : "any";
+    *pattern = number == ROUTE_PAGES ? "pages" : "none";
+    return true;
+  }
+  if (number - ROUTE_FIRST >= sizeof routes / sizeof *routes) {
+    return false;
+  }
+  enum http_method of = routes[number - ROUTE_FIRST].method;
+  *method = of == HTTP_GET      ? "GET"
+            : of == HTTP_POST   ? "POST"
+            : of == HTTP_DELETE ? "DELETE"
+                                : "PATCH";
+  *pattern = routes[number - ROUTE_FIRST].pattern;
+  return true;
+}
+
+static_assert(sizeof routes / sizeof *routes + ROUTE_FIRST <= ROUTES_MAX, "room in the metrics");

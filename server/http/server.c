@@ -14,6 +14,7 @@
 #include "server/http/guard.h"
 #include "server/http/headers.h"
 #include "server/http/listen.h"
+#include "server/http/record.h"
 #include "server/http/route.h"
 #include "server/http/waiters.h"
 
@@ -42,6 +43,7 @@ struct exchange {
   struct request request;
   struct connections *connections;
   struct reply reply; /* prepared before the body has been read, if status is not 0 */
+  struct record record;
   handler *handle;
   size_t body_room, received;
   uintptr_t target_at; /* where libmicrohttpd keeps the target that request.target copies */
@@ -95,15 +97,14 @@ static enum MHD_Result reply_send(struct exchange *exchange, struct reply *reply
     return MHD_NO;
   }
   headers_add(response, reply);
+  MHD_add_response_header(response, "X-Request-Id", exchange->record.id);
   enum MHD_Result result =
       MHD_queue_response(exchange->request.connection, reply->status, response);
   MHD_destroy_response(response);
   if (reply->stream.read) {
     connections_phase(exchange->connections, exchange_connection(exchange), CONNECTION_STREAM);
   }
-  if (reply->status / 100 < 6) {
-    atomic_fetch_add(&exchange->request.service->requests[reply->status / 100], 1);
-  }
+  record_answer(&exchange->record, reply);
   reply_clear(reply);
   return result;
 }
@@ -199,6 +200,7 @@ static enum MHD_Result exchange_wait(struct exchange *exchange, const struct rep
   struct MHD_Connection *connection = exchange->request.connection;
   int64_t job_id = reply->wait_job_id;
   exchange->phase = EXCHANGE_WAITING;
+  exchange->record.waits = true;
   exchange->handle = reply->then;
   MHD_suspend_connection(connection);
   if (!waiters_add(service->waiters, connection, job_id, reply->wait_ms)) {
@@ -246,6 +248,8 @@ static enum MHD_Result server_handle(void *context, struct MHD_Connection *conne
     exchange->request.connection = connection;
     exchange->request.service = server->service;
     exchange->connections = server->connections;
+    exchange->request.id = exchange->record.id;
+    record_begin(&exchange->record, &exchange->request, method);
     exchange_open(exchange, method, version);
     connections_phase(server->connections, exchange_connection(exchange), CONNECTION_BODY);
     return exchange_refuse_now(exchange) ? reply_send(exchange, &exchange->reply) : MHD_YES;
@@ -268,8 +272,10 @@ static void *server_note_target(void *context, const char *target,
   if (exchange) {
     reply_init(&exchange->reply);
     exchange->target_at = (uintptr_t)target;
+    record_target(&exchange->record, target);
     exchange->request.target = strdup(target);
     if (!exchange->request.target) {
+      free(exchange->record.path);
       free(exchange);
       exchange = NULL;
     }
@@ -287,6 +293,7 @@ static void server_completed(void *context, struct MHD_Connection *connection, v
   }
   exchange->request.connection = connection;
   connections_phase(server->connections, exchange_connection(exchange), CONNECTION_HEADER);
+  record_end(&exchange->record, &exchange->request);
   reply_clear(&exchange->reply);
   free(exchange->request.body);
   free(exchange->request.target);
@@ -352,6 +359,7 @@ enum status server_create(const struct options *options, struct service *service
   if (status == STATUS_OK && pthread_create(&made->ticker, NULL, server_tick, made) != 0) {
     status = error_set(error, STATUS_NO_MEMORY, NULL, "Cannot start a thread.");
   }
+  service->connections = made->connections;
   made->ticking = status == STATUS_OK;
   if (status != STATUS_OK) {
     server_destroy(made);

@@ -17,6 +17,9 @@
 struct MHD_Connection;
 struct access;
 struct feed;
+struct connections;
+struct http_meter;
+struct isolation;
 struct job_reader;
 struct waiters;
 
@@ -27,13 +30,15 @@ struct service {
   struct store *store;
   struct pool *pool;
   struct waiters *waiters;
-  struct feed *feed;         /* the stream of events */
-  struct access *access;     /* who may come in */
-  struct job_reader *reader; /* checks job documents */
-  const char *data;          /* data directory */
-  int64_t started_ms;        /* on the monotonic clock */
-  atomic_bool draining;      /* no new jobs */
-  atomic_ullong requests[6]; /* answered, by first digit of the status */
+  struct feed *feed;                 /* the stream of events */
+  struct access *access;             /* who may come in */
+  struct job_reader *reader;         /* checks job documents */
+  const char *data;                  /* data directory */
+  int64_t started_ms;                /* on the monotonic clock */
+  atomic_bool draining;              /* no new jobs */
+  struct http_meter *meter;          /* counts of requests */
+  struct connections *connections;   /* of the server */
+  const struct isolation *isolation; /* of workers */
 };
 
 enum http_method {
@@ -49,6 +54,8 @@ struct request {
   char party[CLIENT_SIZE];  /* the same for limits: of IPv6 the network of 64 bits */
   struct caller caller;
   bool bad_token;          /* one was sent, but it is nobody's */
+  const char *id;          /* of the request, for logs */
+  unsigned route;          /* its number, see route.h */
   enum role least_role;    /* that the route asks for */
   enum http_method method; /* HEAD counts as GET: the body is left out while sending */
   char *target;            /* as received, then cut into pieces by url_parse */

@@ -6,6 +6,7 @@
 #include <sqlite3.h>
 #include <stdbool.h>
 
+#include "server/store/meter.h"
 #include "server/store/store.h"
 
 struct units;
@@ -22,6 +23,7 @@ struct store {
   bool reader_busy[STORE_READERS];
   pthread_mutex_t reader_mutex;
   pthread_cond_t reader_free;
+  struct store_meter meter;
   struct units *units; /* for values in SI */
 };
 
@@ -36,6 +38,11 @@ enum status store_write_begin(struct store *store, struct error *error);
 /* Commits when status is STATUS_OK, else rolls back; unlocks. Returns status, or the reason why
  * the commit failed. */
 enum status store_write_end(struct store *store, enum status status, struct error *error);
+
+/* Notes that a writer has waited since `since_us` for its turn, and whether its transaction has
+ * begun; then the end of the transaction. Under the writer's mutex. */
+void store_meter_wait(struct store *store, int64_t since_us, bool begun);
+void store_meter_write(struct store *store, enum status status);
 
 /* Runs the migrations that the database lacks, each in a transaction of its own. */
 enum status store_migrate(sqlite3 *writer, struct error *error);

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "server/base/clock.h"
 #include "server/base/file.h"
 #include "server/store/connection.h"
 #include "server/store/sql.h"
@@ -119,8 +120,10 @@ void store_read_end(struct store *store, sqlite3 *reader) {
 }
 
 enum status store_write_begin(struct store *store, struct error *error) {
+  int64_t since_us = clock_monotonic_us();
   pthread_mutex_lock(&store->writer_mutex);
   enum status status = sql_run(store->writer, error, "BEGIN IMMEDIATE", "");
+  store_meter_wait(store, since_us, status == STATUS_OK);
   if (status != STATUS_OK) {
     pthread_mutex_unlock(&store->writer_mutex);
   }
@@ -134,6 +137,7 @@ enum status store_write_end(struct store *store, enum status status, struct erro
   if (status != STATUS_OK) {
     sql_run(store->writer, NULL, "ROLLBACK", "");
   }
+  store_meter_write(store, status);
   void (*committed)(void *) =
       store->event_written && status == STATUS_OK ? store->event_committed : NULL;
   void *context = store->event_context;

@@ -10,6 +10,7 @@
 #include <jansson.h>
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #include "server/store/state.h"
 #include "solver/base/error.h"
@@ -207,6 +208,9 @@ enum status store_labels(struct store *store, int64_t id, json_t **labels, struc
 
 /* Writes a consistent copy of the database, of one moment, to an empty or absent file. */
 enum status store_snapshot(struct store *store, const char *path, struct error *error);
+
+/* Writes the store's metrics in the text form of Prometheus. */
+void store_metrics(struct store *store, FILE *out);
 
 /* Number of jobs in each state. */
 enum status store_counts(struct store *store, int64_t counts[JOB_STATE_COUNT], struct error *error);
