@@ -9,6 +9,7 @@
 #include "server/store/meter.h"
 #include "server/store/store.h"
 
+struct group;
 struct units;
 
 enum { STORE_READERS = 8 };
@@ -25,6 +26,7 @@ struct store {
   pthread_cond_t reader_free;
   struct store_meter meter;
   struct units *units; /* for values in SI */
+  struct group *group; /* of submissions that are committed together */
 };
 
 /* Takes a connection for reading, waiting for a free one, with a read transaction open: all that
@@ -43,6 +45,10 @@ enum status store_write_end(struct store *store, enum status status, struct erro
  * begun; then the end of the transaction. Under the writer's mutex. */
 void store_meter_wait(struct store *store, int64_t since_us, bool begun);
 void store_meter_write(struct store *store, enum status status);
+
+/* Writes a submission inside a write transaction; otherwise as store_submit. */
+enum status submission_write(struct store *store, const struct submission *submission, int64_t *id,
+                             bool *replayed, struct error *error);
 
 /* Runs the migrations that the database lacks, each in a transaction of its own. */
 enum status store_migrate(sqlite3 *writer, struct error *error);

@@ -7,6 +7,7 @@
 #include "server/base/clock.h"
 #include "server/base/file.h"
 #include "server/store/connection.h"
+#include "server/store/group.h"
 #include "server/store/sql.h"
 #include "solver/base/units.h"
 
@@ -41,6 +42,9 @@ enum status store_open(const char *directory, struct store **store, struct error
   if (status == STATUS_OK) {
     status = units_create(&opened->units, error);
   }
+  if (status == STATUS_OK && !(opened->group = group_create())) {
+    status = error_set(error, STATUS_NO_MEMORY, NULL, "No memory for the store.");
+  }
   if (status == STATUS_OK) {
     status = connection_open(path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE,
                              "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;"
@@ -71,6 +75,7 @@ void store_close(struct store *store) {
     sql_close(store->readers[i]);
   }
   sql_close(store->writer);
+  group_destroy(store->group);
   units_destroy(store->units);
   pthread_cond_destroy(&store->reader_free);
   pthread_mutex_destroy(&store->reader_mutex);

@@ -81,20 +81,16 @@ static enum status submission_insert(struct store *store, const struct submissio
   return status;
 }
 
-enum status store_submit(struct store *store, const struct submission *submission, int64_t *id,
-                         bool *replayed, struct error *error) {
+enum status submission_write(struct store *store, const struct submission *submission, int64_t *id,
+                             bool *replayed, struct error *error) {
   *replayed = false;
-  enum status status = store_write_begin(store, error);
-  if (status != STATUS_OK) {
-    return status;
-  }
-  status = submission_find(store->writer, submission, id, error);
+  enum status status = submission_find(store->writer, submission, id, error);
   if (status == STATUS_OK && *id != 0) {
     *replayed = true;
   } else if (status == STATUS_OK) {
     status = submission_insert(store, submission, id, error);
   }
-  return store_write_end(store, status, error);
+  return status;
 }
 
 enum status store_delete(struct store *store, int64_t id, struct error *error) {
