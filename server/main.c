@@ -18,6 +18,7 @@
 #include "server/base/options.h"
 #include "server/exec/pool.h"
 #include "server/http/access.h"
+#include "server/http/answers.h"
 #include "server/http/feed.h"
 #include "server/http/record.h"
 #include "server/http/server.h"
@@ -100,6 +101,9 @@ static enum status parts_open(const struct options *options, struct parts *parts
     status = http_meter_create(&service->meter, error);
   }
   if (status == STATUS_OK) {
+    status = answers_create(service->store, &service->answers, error);
+  }
+  if (status == STATUS_OK) {
     status = feed_create(service->store, options->subscribers, &service->feed, error);
   }
   if (status == STATUS_OK) {
@@ -134,6 +138,7 @@ static void parts_close(struct parts *parts) {
   pool_destroy(parts->service.pool);
   feed_destroy(parts->service.feed);
   http_meter_destroy(parts->service.meter);
+  answers_destroy(parts->service.answers);
   isolation_release(&parts->isolation);
   waiters_destroy(parts->service.waiters);
   job_reader_destroy(parts->service.reader);

@@ -4,8 +4,11 @@
 #include <stdlib.h>
 
 #include "server/base/clock.h"
+#include "server/http/answers.h"
 #include "server/http/event_text.h"
 #include "server/plot/plot.h"
+
+enum { KEPT_SIZE_MAX = 16384 };
 
 static json_t *time_view(int64_t unix_ms) {
   char text[CLOCK_TEXT_SIZE];
@@ -50,14 +53,30 @@ static json_t *result_read(const struct service *service, const struct job_recor
   return result;
 }
 
+/* The names of the plots of this very result; false when it cannot be read. A result may be long
+ * and never changes: it is looked at once. */
+static bool plots_of_result(const struct service *service, const struct job_record *record,
+                            const char *names[PLOT_NAMES]) {
+  if (answers_plots(service->answers, record->id, names)) {
+    return true;
+  }
+  json_t *result = result_read(service, record);
+  if (result) {
+    plot_names_for(record->kind, result, names);
+    answers_keep_plots(service->answers, record->id, names);
+  }
+  json_decref(result);
+  return result != NULL;
+}
+
 /* Links to the plots: those that every job of this kind has, or those of this very result. */
-static json_t *plots_view(const struct job_record *record, const json_t *result) {
+static json_t *plots_view(const struct service *service, const struct job_record *record,
+                          bool whole) {
   json_t *plots = json_array();
-  const char *own[PLOT_NAMES];
+  const char *own[PLOT_NAMES] = {NULL};
   const char *const *names = plot_names(record->kind);
   char path[200];
-  if (result) {
-    plot_names_for(record->kind, result, own);
+  if (whole && plots_of_result(service, record, own)) {
     names = own;
   }
   for (size_t i = 0; names[i]; i++) {
@@ -68,7 +87,8 @@ static json_t *plots_view(const struct job_record *record, const json_t *result)
 }
 
 /* Links to what the job has; those of a result only once there is one. */
-static json_t *links_view(const struct job_record *record, const json_t *result) {
+static json_t *links_view(const struct service *service, const struct job_record *record,
+                          bool whole) {
   json_t *links = json_object(), *plots = json_array(), *artifacts = json_array();
   char path[200];
   link_set(links, "self", record->id, "");
@@ -80,7 +100,7 @@ static json_t *links_view(const struct job_record *record, const json_t *result)
     link_set(links, "metrics", record->id, "/metrics");
     link_set(links, "samples", record->id, "/samples.csv");
     json_decref(plots);
-    plots = plots_view(record, result);
+    plots = plots_view(service, record, whole);
   }
   for (size_t i = 0; i < json_array_size(record->artifacts); i++) {
     snprintf(path, sizeof path, "/api/v1/jobs/%lld/artifacts/%s", (long long)record->id,
@@ -92,8 +112,7 @@ static json_t *links_view(const struct job_record *record, const json_t *result)
   return links;
 }
 
-json_t *job_view(const struct service *service, const struct job_record *record,
-                 const json_t *result) {
+json_t *job_view(const struct service *service, const struct job_record *record, bool whole) {
   json_t *view =
       json_pack("{s:I, s:s, s:s, s:s, s:s, s:s, s:O, s:I, s:s, s:o, s:o, s:o}", "id",
                 (json_int_t)record->id, "state", job_state_word(record->state), "reason_code",
@@ -111,7 +130,7 @@ json_t *job_view(const struct service *service, const struct job_record *record,
     json_object_set(view, "metrics", record->metrics);
   }
   if (view) {
-    json_object_set_new(view, "links", links_view(record, result));
+    json_object_set_new(view, "links", links_view(service, record, whole));
   }
   return view;
 }
@@ -120,17 +139,31 @@ static void location_set(struct reply *reply, int64_t id) {
   reply_header(reply, "Location", "/api/v1/jobs/%lld", (long long)id);
 }
 
+/* Whether the view of a job in this state changes only with the database. */
+static bool state_rests(enum job_state state) {
+  return state != JOB_STATE_STARTING && state != JOB_STATE_RUNNING && state != JOB_STATE_CANCELLING;
+}
+
 void job_view_reply(struct request *request, struct reply *reply, unsigned status, int64_t id,
                     bool location) {
+  struct service *service = request->service;
   struct job_record record;
   struct error error;
-  if (store_job(request->service->store, id, &record, &error) != STATUS_OK) {
+  bool plain = request->method == HTTP_GET && status == 200 && !location;
+  struct answer *kept = plain ? answers_find(service->answers, id) : NULL;
+  if (kept) {
+    reply_kept(reply, "application/json", kept);
+    return;
+  }
+  uint64_t version = store_version(service->store);
+  if (store_job(service->store, id, &record, &error) != STATUS_OK) {
     reply_error(reply, &error);
     return;
   }
-  json_t *result = result_read(request->service, &record);
-  reply_json(reply, status, job_view(request->service, &record, result));
-  json_decref(result);
+  reply_json(reply, status, job_view(service, &record, true));
+  if (plain && state_rests(record.state) && reply->body && reply->size <= KEPT_SIZE_MAX) {
+    answers_keep(service->answers, id, version, reply->body, reply->size);
+  }
   job_record_clear(&record);
   if (location) {
     location_set(reply, id);
@@ -145,10 +178,8 @@ static void job_waited(struct request *request, struct reply *reply) {
     return;
   }
   bool ended = job_state_terminal(record.state);
-  json_t *result = result_read(request->service, &record);
   reply_json(reply, ended || request->method == HTTP_GET ? 200 : 202,
-             job_view(request->service, &record, result));
-  json_decref(result);
+             job_view(request->service, &record, true));
   job_record_clear(&record);
   reply_header(reply, "Preference-Applied", "wait=%lld", (long long)request_wait_s(request));
   if (request->job_is_new) {

@@ -6,10 +6,9 @@
 
 #include "server/http/service.h"
 
-/* The JSON of a job: a new reference, NULL without memory. result: the job's result document, from
- * which the links to its plots are made; NULL: those that every job of its kind has. */
-json_t *job_view(const struct service *service, const struct job_record *record,
-                 const json_t *result);
+/* The JSON of a job: a new reference, NULL without memory. whole: with links to all plots
+ * of its result; else to those that every job of its kind has. */
+json_t *job_view(const struct service *service, const struct job_record *record, bool whole);
 
 /* Replies with the job: `status`, its JSON, its Location when `location` is set. */
 void job_view_reply(struct request *request, struct reply *reply, unsigned status, int64_t id,

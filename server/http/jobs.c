@@ -156,7 +156,7 @@ static json_t *list_view(const struct service *service, struct job_record *recor
                          int64_t next) {
   json_t *jobs = json_array();
   for (size_t i = 0; i < count; i++) {
-    json_array_append_new(jobs, job_view(service, &records[i], NULL));
+    json_array_append_new(jobs, job_view(service, &records[i], false));
     job_record_clear(&records[i]);
   }
   free(records);

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "server/http/answers.h"
 #include "server/http/service.h"
 #include "solver/job/json.h"
 
@@ -15,6 +16,9 @@ void reply_init(struct reply *reply) {
 
 void reply_clear(struct reply *reply) {
   free(reply->body);
+  if (reply->kept) {
+    answer_release(reply->kept->text);
+  }
   if (reply->fd >= 0) {
     close(reply->fd);
   }
@@ -90,6 +94,12 @@ void reply_static(struct reply *reply, const char *content_type, const void *dat
   reply->body = NULL;
   reply->static_body = data;
   reply->size = size;
+  reply->content_type = content_type;
+}
+
+void reply_kept(struct reply *reply, const char *content_type, struct answer *answer) {
+  reply->kept = answer;
+  reply->size = answer->size;
   reply->content_type = content_type;
 }
 

@@ -9,6 +9,7 @@
 
 #include "server/base/clock.h"
 #include "server/http/access.h"
+#include "server/http/answers.h"
 #include "server/http/connections.h"
 #include "server/http/feed.h"
 #include "server/http/guard.h"
@@ -77,6 +78,10 @@ static struct MHD_Response *response_make(struct reply *reply) {
     response = MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, STREAM_BLOCK, reply->stream.read,
                                                  reply->stream.context, reply->stream.done);
     reply->stream.done = response ? NULL : reply->stream.done;
+  } else if (reply->kept) {
+    response = MHD_create_response_from_buffer_with_free_callback(
+        reply->kept->size, reply->kept->text, answer_release);
+    reply->kept = response ? NULL : reply->kept;
   } else if (reply->fd >= 0) {
     response = MHD_create_response_from_fd(reply->size, reply->fd);
     reply->fd = response ? -1 : reply->fd;

@@ -15,6 +15,8 @@
 #include "server/store/store.h"
 
 struct MHD_Connection;
+struct answer;
+struct answers;
 struct access;
 struct feed;
 struct connections;
@@ -31,6 +33,7 @@ struct service {
   struct pool *pool;
   struct waiters *waiters;
   struct feed *feed;                 /* the stream of events */
+  struct answers *answers;           /* kept answers */
   struct access *access;             /* who may come in */
   struct job_reader *reader;         /* checks job documents */
   const char *data;                  /* data directory */
@@ -87,6 +90,7 @@ struct reply {
   const char *content_type;
   char *body;              /* malloc'd, taken over by the reply */
   const void *static_body; /* of the program itself */
+  struct answer *kept;     /* a use of a kept answer, taken over */
   size_t size;
   int fd; /* -1, or an open file of `size` bytes, taken over */
   struct reply_stream stream;
@@ -119,6 +123,9 @@ void reply_text(struct reply *reply, const char *content_type, char *text, size_
 
 /* Replies with bytes of the program. */
 void reply_static(struct reply *reply, const char *content_type, const void *data, size_t size);
+
+/* Replies with a kept answer, whose use is taken over. */
+void reply_kept(struct reply *reply, const char *content_type, struct answer *answer);
 
 /* Replies with a regular file, which is not followed if it is a link; 404 when it is missing. */
 void reply_file(struct reply *reply, const char *content_type, const char *path);

@@ -4,6 +4,7 @@
 
 #include <pthread.h>
 #include <sqlite3.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 
 #include "server/store/meter.h"
@@ -17,7 +18,8 @@ enum { STORE_READERS = 8 };
 struct store {
   sqlite3 *writer; /* the only connection that writes and checkpoints */
   pthread_mutex_t writer_mutex;
-  bool event_written; /* by the open transaction; under the writer's mutex, like the two below */
+  atomic_ullong version; /* grows with every commit */
+  bool event_written;    /* by the open transaction; under the writer's mutex, like the two below */
   void (*event_committed)(void *context);
   void *event_context;
   sqlite3 *readers[STORE_READERS];

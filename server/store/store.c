@@ -143,6 +143,9 @@ enum status store_write_end(struct store *store, enum status status, struct erro
     sql_run(store->writer, NULL, "ROLLBACK", "");
   }
   store_meter_write(store, status);
+  if (status == STATUS_OK) {
+    atomic_fetch_add(&store->version, 1);
+  }
   void (*committed)(void *) =
       store->event_written && status == STATUS_OK ? store->event_committed : NULL;
   void *context = store->event_context;
@@ -152,6 +155,10 @@ enum status store_write_end(struct store *store, enum status status, struct erro
     committed(context);
   }
   return status;
+}
+
+uint64_t store_version(const struct store *store) {
+  return atomic_load(&store->version);
 }
 
 enum status store_no_job(int64_t id, struct error *error) {

@@ -174,6 +174,10 @@ enum status store_attempts(struct store *store, int64_t id, json_t **attempts, s
 enum status store_parameters(struct store *store, int64_t id, json_t **parameters,
                              struct error *error);
 
+/* A number that is another one after every transaction that was committed. Whatever is read after
+ * it is at least as new. */
+uint64_t store_version(const struct store *store);
+
 /* ---- events ------------------------------------------------------------------------------ */
 
 /* A row of the history: a job has reached a state, or 'deleted'. Texts live as long as the call
