@@ -122,6 +122,14 @@ static void refuse_piece(const char *text, size_t size, size_t start, size_t end
   }
 }
 
+static bool is_blank(const char *text, size_t size) {
+  size_t at = 0;
+  while (at < size && text[at] != '\0' && strchr(" \t\r\n", text[at])) {
+    at++;
+  }
+  return at == size;
+}
+
 /* Says what Jansson found, with the place where the offending piece begins. */
 static enum status refuse_syntax(const char *text, size_t size, const json_error_t *problem,
                                  struct error *error) {
@@ -144,7 +152,7 @@ static enum status refuse_syntax(const char *text, size_t size, const json_error
     start = size;
     error_set(error, STATUS_SYNTAX, NULL,
               "not well-formed JSON: the text %s\na whole JSON object\n%s",
-              strspn(text, " \t\r\n") >= size ? "is empty" : "ends too early", example);
+              is_blank(text, size) ? "is empty" : "ends too early", example);
     break;
   case json_error_end_of_input_expected:
     error_set(error, STATUS_SYNTAX, NULL,

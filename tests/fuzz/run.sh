@@ -29,7 +29,7 @@ TIMEFORMAT='%U %S'
 # run_target NAME: pieces of a minute each until the CPU time is used up; fails on a finding.
 run_target() {
   local name=$1 program=tests/fuzz/fuzz_$1 corpus=$source_dir/corpus/$1
-  local found=$work/$1-findings log=$work/$1.log used=0 runs=0 spent pieces=0 options=()
+  local found=$work/$1-findings log=$work/$1.log used=0 runs=0 spent count options=()
   mkdir -p "$work/$name" "$found"
   [ ! -f "$source_dir/$name.dict" ] || options+=("-dict=$source_dir/$name.dict")
   if $minimise; then
@@ -38,15 +38,14 @@ run_target() {
     echo "$name: $(find "$work/$name-small" -type f | wc -l) inputs are enough"
     return 0
   fi
-  : >"$log"
   while awk "BEGIN { exit !($used < 60 * $minutes) }"; do
     local status=0
     spent=$( { time "$program" "${options[@]}" -max_total_time=60 -timeout=25 -rss_limit_mb=2048 \
       -print_final_stats=1 -max_len=8192 -artifact_prefix="$found/" "$work/$name" "$corpus" \
-      >>"$log" 2>&1; } 2>&1) || status=$?
+      >"$log" 2>&1; } 2>&1) || status=$?
     used=$(awk "BEGIN { split(\"$spent\", part, \" \"); print $used + part[1] + part[2] }")
-    runs=$((runs + $(sed -n 's/^stat::number_of_executed_units: *//p' "$log" | tail -n 1)))
-    pieces=$((pieces + 1))
+    count=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log" | tail -n 1)
+    runs=$((runs + ${count:-0}))
     if [ "$status" -ne 0 ]; then
       echo "$name: FINDING after $runs executions, $used s of CPU time: see $log, $found"
       return 1
