@@ -1,28 +1,28 @@
 /* pneulabd: accepts jobs over HTTP, keeps them in SQLite, runs pneulab-solve. */
-#include <arpa/inet.h>
-#include <errno.h>
-#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "server/auth/token_command.h"
 #include "server/base/clock.h"
-#include "server/base/file.h"
+#include "server/base/lock.h"
 #include "server/base/log.h"
 #include "server/base/notify.h"
 #include "server/base/options.h"
+#include "server/exec/disk.h"
+#include "server/exec/janitor.h"
 #include "server/exec/pool.h"
 #include "server/http/access.h"
 #include "server/http/answers.h"
 #include "server/http/feed.h"
 #include "server/http/record.h"
 #include "server/http/server.h"
+#include "server/http/snapshots.h"
 #include "server/http/waiters.h"
+#include "server/maintenance.h"
 #include "server/store/store.h"
 #include "solver/job/spec.h"
 
@@ -33,7 +33,9 @@ struct parts {
   int lock; /* keeps a second daemon away from the data directory */
   struct isolation isolation;
   struct service service;
+  struct janitor *janitor;
   struct server *server;
+  enum exit_code exit_code; /* when they could not be made */
 };
 
 static void job_changed(void *context, int64_t job_id) {
@@ -46,22 +48,9 @@ static void job_progressed(void *context, int64_t job_id, int64_t attempt,
   feed_progress(service->feed, job_id, attempt, progress);
 }
 
-static enum status data_lock(const char *directory, int *lock, struct error *error) {
-  char path[PATH_MAX];
-  enum status status = file_make_directory(directory, error);
-  if (status != STATUS_OK) {
-    return status;
-  }
-  int length = snprintf(path, sizeof path, "%s/pneulabd.lock", directory);
-  *lock = length > 0 && (size_t)length < sizeof path
-              ? open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644)
-              : -1;
-  if (*lock < 0 || flock(*lock, LOCK_EX | LOCK_NB) != 0) {
-    return error_set(error, STATUS_CONFLICT, NULL,
-                     "Cannot lock the data directory %s: %s. Does another pneulabd use it?",
-                     directory, strerrordesc_np(errno));
-  }
-  return STATUS_OK;
+static void copy_made(void *context, int64_t ticket) {
+  const struct service *service = context;
+  waiters_job_ended(service->waiters, -ticket);
 }
 
 static enum status isolate(const struct options *options, struct isolation *isolation,
@@ -74,19 +63,23 @@ static enum status isolate(const struct options *options, struct isolation *isol
   return isolation_open(&settings, isolation, error);
 }
 
-static enum status parts_open(const struct options *options, struct parts *parts,
-                              struct error *error) {
+/* The database, and what only asks it. */
+static enum status parts_open_store(const struct options *options, struct parts *parts,
+                                    struct error *error) {
   struct service *service = &parts->service;
   int64_t recovered = 0;
   service->data = options->data;
   service->isolation = &parts->isolation;
   service->started_ms = clock_monotonic_ms();
   enum status status = access_create(options, &service->access, error);
+  parts->exit_code = EXIT_FAILED;
   if (status == STATUS_OK) {
-    status = data_lock(options->data, &parts->lock, error);
+    status = lock_take(options->data, &parts->lock, error);
+    parts->exit_code = status == STATUS_CONFLICT ? EXIT_IN_USE : EXIT_FAILED;
   }
   if (status == STATUS_OK) {
     status = store_open(options->data, &service->store, error);
+    parts->exit_code = maintenance_exit_code(status);
   }
   if (status == STATUS_OK) {
     status = store_recover(service->store, &recovered, error);
@@ -106,11 +99,35 @@ static enum status parts_open(const struct options *options, struct parts *parts
   if (status == STATUS_OK) {
     status = feed_create(service->store, options->subscribers, &service->feed, error);
   }
+  if (recovered > 0) {
+    log_line("%lld jobs were left open by an earlier run", (long long)recovered);
+  }
+  return status;
+}
+
+static enum status parts_open(const struct options *options, struct parts *parts,
+                              struct error *error) {
+  struct service *service = &parts->service;
+  enum status status = parts_open_store(options, parts, error);
   if (status == STATUS_OK) {
     status = isolate(options, &parts->isolation, error);
   }
   if (status == STATUS_OK) {
+    status = disk_create(service->store, options->data, options->disk_reserve_bytes, &service->disk,
+                         error);
+  }
+  if (status == STATUS_OK) {
+    struct janitor_settings settings = {
+        .store = service->store,
+        .disk = service->disk,
+        .data = options->data,
+        .limits = {.keep_ms = (int64_t)(86400e3 * options->keep_files_days),
+                   .keep_bytes = (int64_t)options->keep_files_bytes}};
+    status = janitor_create(&settings, &parts->janitor, error);
+  }
+  if (status == STATUS_OK) {
     struct pool_settings settings = {.store = service->store,
+                                     .disk = service->disk,
                                      .data = options->data,
                                      .solver = options->solver,
                                      .isolation = &parts->isolation,
@@ -125,21 +142,25 @@ static enum status parts_open(const struct options *options, struct parts *parts
     status = pool_create(&settings, &service->pool, error);
   }
   if (status == STATUS_OK) {
-    status = server_create(options, service, &parts->server, error);
+    status = snapshots_create(service->store, options->data, copy_made, service,
+                              &service->snapshots, error);
   }
-  if (recovered > 0) {
-    log_line("%lld jobs were left open by an earlier run", (long long)recovered);
+  if (status == STATUS_OK) {
+    status = server_create(options, service, &parts->server, error);
   }
   return status;
 }
 
 static void parts_close(struct parts *parts) {
   server_destroy(parts->server); /* its handlers ask the pool */
+  snapshots_destroy(parts->service.snapshots);
   pool_destroy(parts->service.pool);
   feed_destroy(parts->service.feed);
   http_meter_destroy(parts->service.meter);
   answers_destroy(parts->service.answers);
   isolation_release(&parts->isolation);
+  janitor_destroy(parts->janitor);
+  disk_destroy(parts->service.disk);
   waiters_destroy(parts->service.waiters);
   job_reader_destroy(parts->service.reader);
   store_close(parts->service.store);
@@ -185,7 +206,7 @@ static int await_signal(struct parts *parts, const sigset_t *signals) {
   return received;
 }
 
-static int serve(const struct options *options) {
+static enum exit_code serve(const struct options *options) {
   struct parts parts = {.lock = -1};
   struct error error;
   sigset_t signals;
@@ -214,7 +235,10 @@ static int serve(const struct options *options) {
     drain(&parts, &signals, options->drain_timeout_s);
   }
   parts_close(&parts);
-  return status == STATUS_OK ? EXIT_SUCCESS : EXIT_FAILURE;
+  if (status == STATUS_OK) {
+    return EXIT_FINE;
+  }
+  return parts.exit_code == EXIT_FINE ? EXIT_FAILED : parts.exit_code;
 }
 
 int main(int argc, char **argv) {
@@ -226,16 +250,16 @@ int main(int argc, char **argv) {
   }
   if (options_read(argc, argv, &options, &error) != STATUS_OK) {
     fprintf(stderr, "pneulabd: %s\n", error.message);
-    return 2;
+    return EXIT_COMMAND_LINE;
   }
   if (options.action == OPTIONS_HELP) {
     options_help(stdout);
-    return EXIT_SUCCESS;
+    return EXIT_FINE;
   }
   if (options.action == OPTIONS_VERSION) {
     puts("pneulabd " PNEULAB_VERSION);
-    return EXIT_SUCCESS;
+    return EXIT_FINE;
   }
   log_configure((enum log_level)options.log_level, (enum log_format)options.log_format);
-  return serve(&options);
+  return maintenance_wanted(&options) ? (int)maintenance_run(&options) : (int)serve(&options);
 }

@@ -257,6 +257,10 @@ int main(int argc, char **argv) {
   if (document) {
     print_document(document);
   }
+  if (fflush(stdout) != 0 || ferror(stdout)) {
+    fprintf(stderr, "pneulab-solve: writing the result failed: %s\n", strerror(errno));
+    return EXIT_INTERNAL;
+  }
   return ending == STATUS_OK          ? EXIT_SUCCEEDED
          : ending == STATUS_CANCELLED ? EXIT_CANCELLED
                                       : EXIT_STOPPED_EARLY;

@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <fts.h>
 #include <ftw.h>
 #include <limits.h>
 #include <stdio.h>
@@ -12,7 +13,12 @@
 
 static enum status file_fail(struct error *error, const char *doing, const char *path) {
   int reason = errno;
-  enum status status = reason == ENOENT ? STATUS_NOT_FOUND : STATUS_IO;
+  enum status status = STATUS_IO;
+  if (reason == ENOENT) {
+    status = STATUS_NOT_FOUND;
+  } else if (reason == ENOSPC || reason == EDQUOT) {
+    status = STATUS_NO_SPACE;
+  }
   return error_set(error, status, NULL, "Cannot %s %s: %s.", doing, path, strerrordesc_np(reason));
 }
 
@@ -121,6 +127,49 @@ enum status file_write(const char *path, const char *data, size_t size, struct e
     status = file_fail(error, "write", path);
   }
   return status;
+}
+
+enum status file_sync(const char *path, struct error *error) {
+  int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  if (fd < 0) {
+    return file_fail(error, "open", path);
+  }
+  enum status status = fsync(fd) == 0 ? STATUS_OK : file_fail(error, "write", path);
+  close(fd);
+  return status;
+}
+
+enum status file_sync_parent(const char *path, struct error *error) {
+  char parent[PATH_MAX];
+  size_t length = strlen(path);
+  if (length >= sizeof parent) {
+    errno = ENAMETOOLONG;
+    return file_fail(error, "write", path);
+  }
+  memcpy(parent, path, length + 1);
+  char *slash = strrchr(parent, '/');
+  if (!slash) {
+    strcpy(parent, ".");
+  } else {
+    slash[slash == parent] = '\0';
+  }
+  return file_sync(parent, error);
+}
+
+int64_t file_tree_bytes(const char *path) {
+  char *const paths[] = {(char *)(uintptr_t)path, NULL};
+  int64_t bytes = 0;
+  FTS *tree = fts_open(paths, FTS_PHYSICAL | FTS_NOCHDIR, NULL);
+  FTSENT *entry;
+  while (tree && (entry = fts_read(tree))) {
+    if (entry->fts_info == FTS_F || entry->fts_info == FTS_D) {
+      bytes += (int64_t)entry->fts_statp->st_blocks * 512;
+    }
+  }
+  if (tree) {
+    fts_close(tree);
+  }
+  return bytes;
 }
 
 bool file_name_is_plain(const char *name) {

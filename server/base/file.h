@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "solver/base/error.h"
 
@@ -21,6 +22,16 @@ enum status file_read(const char *path, size_t limit, char **data, size_t *size,
 
 /* Writes the whole file (mode 0644), replacing an old one. STATUS_IO on failure. */
 enum status file_write(const char *path, const char *data, size_t size, struct error *error);
+
+/* Makes the content of a file, or the entries of a directory, durable. STATUS_IO, STATUS_NO_SPACE
+ * or STATUS_NOT_FOUND. */
+enum status file_sync(const char *path, struct error *error);
+
+/* Makes the entry of a file in its directory durable. */
+enum status file_sync_parent(const char *path, struct error *error);
+
+/* The bytes that a directory with everything in it takes on the disk, 0 when it is not there. */
+int64_t file_tree_bytes(const char *path);
 
 /* Whether name is a plain file name: 1 to 100 of [A-Za-z0-9._-], not starting with a dot. */
 bool file_name_is_plain(const char *name);

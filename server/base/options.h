@@ -3,6 +3,7 @@
 #define PNEULAB_SERVER_OPTIONS_H
 
 #include <limits.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "server/base/option.h"
@@ -36,6 +37,13 @@ struct options {
   unsigned connections;           /* in all, beside those of subscribers */
   unsigned log_level;             /* enum log_level */
   unsigned log_format;            /* enum log_format */
+  uint64_t disk_reserve_bytes;    /* free space below which no job is accepted or started */
+  double keep_files_days;         /* files of finished jobs; 0: for ever */
+  uint64_t keep_files_bytes;      /* likewise in all; 0: no limit */
+  char backup[PATH_MAX];          /* copy the database there instead of serving; "" for no */
+  char restore[PATH_MAX];         /* restore the database from there instead; "" for no */
+  bool check;                     /* check the database instead */
+  bool force;                     /* replace what is there */
   unsigned action;                /* enum options_action */
 };
 

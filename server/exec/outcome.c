@@ -191,6 +191,20 @@ void outcome_set_unstorable(struct outcome *outcome, const struct error *error) 
   outcome->attempt.artifacts = NULL;
 }
 
+void outcome_set_files_lost(struct outcome *outcome, const struct error *error) {
+  outcome_set(outcome, ATTEMPT_WORKER_LOST, "files_not_stored", "%s", error->message);
+  outcome->attempt.result_text = NULL;
+  outcome->attempt.result = NULL;
+  outcome->attempt.artifacts = NULL;
+}
+
+void outcome_set_requeued(struct outcome *outcome) {
+  char found[sizeof outcome->message];
+  snprintf(found, sizeof found, "%s", outcome->message);
+  outcome_set(outcome, ATTEMPT_REQUEUED, "disk_failed",
+              "The disk was full or failed while the job ran; it will run again. %.200s", found);
+}
+
 void outcome_clear(struct outcome *outcome) {
   free(outcome->result_text);
   json_decref(outcome->result);

@@ -37,6 +37,13 @@ void outcome_judge(struct outcome *outcome, const struct process_end *end, enum 
 /* The outcome of a worker that could not be started. */
 void outcome_not_started(struct outcome *outcome, const struct error *error);
 
+/* The files that the result refers to could not be made durable: without them it is no result. */
+void outcome_set_files_lost(struct outcome *outcome, const struct error *error);
+
+/* The disk, not the worker, is to blame for a lost attempt: it does not count, and the job is
+ * queued again. */
+void outcome_set_requeued(struct outcome *outcome);
+
 /* Makes a failure without a result of an outcome whose result the store refused. */
 void outcome_set_unstorable(struct outcome *outcome, const struct error *error);
 

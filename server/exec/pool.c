@@ -66,6 +66,7 @@ static void slot_progressed(void *context, const struct progress *progress) {
 
 static enum stop_cause slot_stop_wanted(void *context) {
   struct slot *slot = context;
+  disk_check(slot->pool->settings.disk, NULL); /* trouble that comes and goes is to be seen */
   pthread_mutex_lock(&slot->pool->mutex);
   enum stop_cause cause = STOP_NONE;
   if (slot->pool->aborting) {
@@ -114,10 +115,12 @@ static bool slot_pause(struct slot *slot) {
 static enum status slot_store(struct slot *slot, struct outcome *outcome, enum job_state *state,
                               struct error *error) {
   struct store *store = slot->pool->settings.store;
-  enum status status;
-  while ((status = store_attempt_finish(store, &outcome->attempt, state, error)) == STATUS_IO ||
-         status == STATUS_NO_MEMORY) {
-    slot_complain(slot, error);
+  enum status status, before = STATUS_OK;
+  while (store_failed(status = store_attempt_finish(store, &outcome->attempt, state, error))) {
+    if (status != before) {
+      slot_complain(slot, error);
+      before = status;
+    }
     if (!slot_pause(slot)) {
       return status;
     }
@@ -201,10 +204,14 @@ static void slot_run(struct slot *slot, const struct claim *claim) {
                             .stop_wanted = slot_stop_wanted};
   struct outcome outcome;
   char directory[RUN_DIRECTORY_SIZE + 8];
+  unsigned troubles = disk_troubles(settings->disk);
   slot_assign(slot, claim);
   struct slot_job job = slot_job_read(slot, claim);
   settings->changed(settings->context, claim->job_id);
   run_attempt(&run, claim, &hooks, &outcome);
+  if (outcome.attempt.end == ATTEMPT_WORKER_LOST && disk_blamed(settings->disk, troubles)) {
+    outcome_set_requeued(&outcome);
+  }
   run_directory(claim->job_id, claim->attempt, directory);
   outcome.attempt.job_id = claim->job_id;
   outcome.attempt.attempt = claim->attempt;
@@ -245,7 +252,8 @@ static void *slot_main(void *context) {
       bool open = !slot->pool->draining;
       pthread_mutex_unlock(&slot->pool->mutex);
       claimed = false;
-      if (open && store_claim(slot->pool->settings.store, &claim, &claimed, &error) != STATUS_OK) {
+      if (open && disk_check(slot->pool->settings.disk, NULL) == STATUS_OK &&
+          store_claim(slot->pool->settings.store, &claim, &claimed, &error) != STATUS_OK) {
         log_event(LOG_LEVEL_ERROR, "cannot take a job", LOG_TEXT("error", error.message));
       }
       if (claimed) {

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "server/exec/isolation.h"
+#include "server/exec/disk.h"
 #include "server/exec/progress.h"
 #include "server/store/store.h"
 
@@ -15,6 +16,7 @@ struct tally;
 
 struct pool_settings {
   struct store *store;
+  struct disk *disk;                 /* no attempt is begun while it is in trouble */
   const char *data;                  /* data directory; lives as long as the pool */
   const char *solver;                /* likewise */
   const struct isolation *isolation; /* likewise */

@@ -146,8 +146,8 @@ enum status process_start(const char *const *argv, const char *output_path, cons
   enum status status;
   struct command command;
   if (files[0] < 0 || files[1] < 0 || files[2] < 0) {
-    status = error_set(error, STATUS_IO, NULL, "Cannot create %s: %s.", output_path,
-                       strerrordesc_np(errno));
+    status = error_set(error, errno == ENOSPC || errno == EDQUOT ? STATUS_NO_SPACE : STATUS_IO,
+                       NULL, "Cannot create %s: %s.", output_path, strerrordesc_np(errno));
   } else {
     command_make(&command, argv, directory, limits, isolation);
     status = process_fork(&command, files, process, error);

@@ -123,6 +123,31 @@ static enum stop_cause run_watch(const struct run_hooks *hooks, const struct run
   return watch.cause;
 }
 
+/* Makes the files that the result refers to durable, with the folders they are in: the database
+ * must not name what a power failure can take away. */
+static enum status run_sync(const struct run_paths *paths, const struct outcome *outcome,
+                            struct error *error) {
+  char path[PATH_MAX];
+  const char *name;
+  json_t *size;
+  enum status status = STATUS_OK;
+  if (json_object_size(outcome->artifacts) == 0) {
+    return STATUS_OK;
+  }
+  json_object_foreach(outcome->artifacts, name, size) {
+    if (status == STATUS_OK && path_join(path, paths->artifacts, name)) {
+      status = file_sync(path, error);
+    }
+  }
+  if (status == STATUS_OK) {
+    status = file_sync(paths->artifacts, error);
+  }
+  if (status == STATUS_OK) {
+    status = file_sync(paths->directory, error);
+  }
+  return status == STATUS_OK ? file_sync_parent(paths->directory, error) : status;
+}
+
 void run_attempt(const struct run_settings *settings, const struct claim *claim,
                  const struct run_hooks *hooks, struct outcome *outcome) {
   struct error error = {.status = STATUS_OK};
@@ -147,4 +172,7 @@ void run_attempt(const struct run_settings *settings, const struct claim *claim,
     output = paths.result;
   }
   outcome_judge(outcome, &end, cause, output, paths.artifacts);
+  if (outcome->attempt.result && run_sync(&paths, outcome, &error) != STATUS_OK) {
+    outcome_set_files_lost(outcome, &error);
+  }
 }

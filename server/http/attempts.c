@@ -42,6 +42,6 @@ void attempts_log(struct request *request, struct reply *reply) {
   run_directory(id, attempt, name);
   int length = snprintf(path, sizeof path, "%s/%s/log.txt", request->service->data, name);
   if (length > 0 && (size_t)length < sizeof path) {
-    reply_file(reply, "text/plain; charset=utf-8", path);
+    reply_job_file(request, reply, "text/plain; charset=utf-8", id, path);
   }
 }

@@ -1,25 +1,27 @@
-#include <limits.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <unistd.h>
-
 #include "server/http/handlers.h"
+#include "server/http/snapshots.h"
 
-void database_show(struct request *request, struct reply *reply) {
-  char path[PATH_MAX];
+enum { COPY_WAIT_MS = 600000 };
+
+/* Sends the copy that the request has waited for. */
+static void database_send(struct request *request, struct reply *reply) {
   struct error error;
-  int length = snprintf(path, sizeof path, "%s/snapshot-XXXXXX", request->service->data);
-  int fd = length > 0 && (size_t)length < sizeof path ? mkstemp(path) : -1;
-  if (fd < 0) {
-    reply_problem(reply, 500, "io_error", "Cannot create a file for the snapshot.");
+  int64_t size;
+  int fd;
+  if (snapshots_take(request->service->snapshots, -request->job_id, &fd, &size, &error) !=
+      STATUS_OK) {
+    reply_error(reply, &error);
     return;
   }
-  close(fd);
-  if (store_snapshot(request->service->store, path, &error) == STATUS_OK) {
-    reply_file(reply, "application/vnd.sqlite3", path);
-    reply_header(reply, "Content-Disposition", "attachment; filename=\"pneulab.db\"");
-  } else {
-    reply_error(reply, &error);
-  }
-  unlink(path); /* an open file stays readable until it has been sent */
+  reply->fd = fd;
+  reply->size = (size_t)size;
+  reply->content_type = "application/vnd.sqlite3";
+  reply_header(reply, "Content-Disposition", "attachment; filename=\"pneulab.db\"");
+}
+
+void database_show(struct request *request, struct reply *reply) {
+  request->job_id = -snapshots_ask(request->service->snapshots);
+  reply->wait_job_id = request->job_id; /* waiters know copies by negative numbers */
+  reply->wait_ms = COPY_WAIT_MS;
+  reply->then = database_send;
 }

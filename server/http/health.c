@@ -13,8 +13,9 @@ void health_ready(struct request *request, struct reply *reply) {
   struct error error;
   if (atomic_load(&request->service->draining)) {
     reply_problem(reply, 503, "shutting_down", "The server is shutting down.");
-  } else if (store_counts(request->service->store, counts, &error) != STATUS_OK) {
-    reply_problem(reply, 503, "database", "%s", error.message);
+  } else if (disk_check(request->service->disk, &error) != STATUS_OK ||
+             store_counts(request->service->store, counts, &error) != STATUS_OK) {
+    reply_problem(reply, 503, status_word(error.status), "%s", error.message);
   } else if (pool_check(request->service->pool, &error) != STATUS_OK) {
     reply_problem(reply, 503, "workers", "%s", error.message);
   } else {

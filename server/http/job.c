@@ -1,9 +1,7 @@
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "server/base/file.h"
-#include "server/exec/run.h"
+#include "server/exec/janitor.h"
 #include "server/http/cache.h"
 #include "server/http/handlers.h"
 #include "server/http/job_view.h"
@@ -38,18 +36,6 @@ void job_document(struct request *request, struct reply *reply) {
   cache_mark(reply, tag);
 }
 
-/* Removes the folders of the job's attempts. */
-static void job_remove_files(const char *data, int64_t id, int64_t attempts) {
-  for (int64_t attempt = 1; attempt <= attempts; attempt++) {
-    char name[RUN_DIRECTORY_SIZE], path[PATH_MAX];
-    run_directory(id, attempt, name);
-    int length = snprintf(path, sizeof path, "%s/%s", data, name);
-    if (length > 0 && (size_t)length < sizeof path) {
-      file_remove_tree(path);
-    }
-  }
-}
-
 void job_delete(struct request *request, struct reply *reply) {
   struct service *service = request->service;
   struct job_record record;
@@ -68,7 +54,7 @@ void job_delete(struct request *request, struct reply *reply) {
     reply_error(reply, &error);
     return;
   }
-  job_remove_files(service->data, id, attempts);
+  janitor_remove_files(service->data, id, attempts);
   reply->status = 204;
 }
 
@@ -127,6 +113,9 @@ static enum status job_resubmit(const struct service *service, int64_t id, int64
     submission.root = root;
     submission.spec_hash = spec.hash;
     submission.timeout_s = spec.timeout_s;
+    status = disk_check(service->disk, error);
+  }
+  if (status == STATUS_OK) {
     status = store_submit(store, &submission, new_id, &replayed, error);
   }
   job_spec_release(&spec);

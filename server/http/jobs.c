@@ -54,7 +54,10 @@ void jobs_submit(struct request *request, struct reply *reply) {
   submission.root = root;
   submission.spec_hash = spec.hash;
   submission.timeout_s = spec.timeout_s;
-  enum status status = store_submit(service->store, &submission, &id, &replayed, &error);
+  enum status status = disk_check(service->disk, &error);
+  if (status == STATUS_OK) {
+    status = store_submit(service->store, &submission, &id, &replayed, &error);
+  }
   json_decref(root);
   job_spec_release(&spec);
   if (status == STATUS_CONFLICT && submission.idempotency_key) {

@@ -10,6 +10,8 @@
 #include "server/http/service.h"
 #include "solver/job/json.h"
 
+enum { RETRY_AFTER_S = 5 };
+
 void reply_init(struct reply *reply) {
   *reply = (struct reply){.status = 200, .fd = -1};
 }
@@ -143,18 +145,28 @@ static const char *status_title(unsigned status) {
                 {404, "the named thing does not exist"},
                 {405, "the resource does not offer this method"},
                 {409, "the request does not fit the present state"},
+                {410, "the thing was here and is gone"},
                 {413, "the request body is too large"},
                 {421, "the request is meant for another server"},
                 {422, "the content breaks a rule"},
                 {429, "the client sends too many requests"},
                 {501, "the request needs something that is not offered"},
-                {503, "the service cannot do this now"}};
+                {503, "the service cannot do this now"},
+                {507, "there is no space to store this"}};
   for (size_t i = 0; i < sizeof titles / sizeof *titles; i++) {
     if (titles[i].status == status) {
       return titles[i].title;
     }
   }
   return "the request failed";
+}
+
+/* Sends a problem. Those that pass by themselves say when it is worth asking again. */
+static void reply_problem_send(struct reply *reply, unsigned status, json_t *problem) {
+  reply_json_typed(reply, status, "application/problem+json", problem);
+  if (status == 503 || status == 507) {
+    reply_header(reply, "Retry-After", "%d", RETRY_AFTER_S);
+  }
 }
 
 void reply_problem(struct reply *reply, unsigned status, const char *code, const char *format,
@@ -168,7 +180,7 @@ void reply_problem(struct reply *reply, unsigned status, const char *code, const
   if (!problem) { /* a detail cut inside a character of its input */
     problem = problem_make(status, code, status_title(status), status_title(status));
   }
-  reply_json_typed(reply, status, "application/problem+json", problem);
+  reply_problem_send(reply, status, problem);
 }
 
 static unsigned error_http_status(enum status status) {
@@ -184,7 +196,12 @@ static unsigned error_http_status(enum status status) {
     return 409;
   case STATUS_TOO_LARGE:
     return 413;
+  case STATUS_NO_SPACE:
+    return 507;
   case STATUS_NO_MEMORY:
+  case STATUS_IO:
+  case STATUS_BUSY:
+  case STATUS_DAMAGED:
     return 503;
   default:
     return 500;
@@ -200,5 +217,5 @@ void reply_error(struct reply *reply, const struct error *error) {
     json_object_set_new(problem, "pointer", json_string(error->pointer));
   }
   json_set_error(problem, error);
-  reply_json_typed(reply, status, "application/problem+json", problem);
+  reply_problem_send(reply, status, problem);
 }

@@ -197,7 +197,7 @@ void result_artifact(struct request *request, struct reply *reply) {
   } else {
     int length = snprintf(path, sizeof path, "%s/%s/out/%s", service->data, directory, name);
     if (length > 0 && (size_t)length < sizeof path) {
-      reply_file(reply, artifact_type(name), path);
+      reply_job_file(request, reply, artifact_type(name), id, path);
       artifact_mark(request, reply);
     }
   }

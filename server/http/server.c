@@ -17,6 +17,7 @@
 #include "server/http/listen.h"
 #include "server/http/record.h"
 #include "server/http/route.h"
+#include "server/http/snapshots.h"
 #include "server/http/waiters.h"
 
 enum {
@@ -213,6 +214,12 @@ static enum MHD_Result exchange_wait(struct exchange *exchange, const struct rep
     return MHD_YES;
   }
   /* From here on another thread may resume and even finish the exchange. */
+  if (job_id < 0) {
+    if (snapshots_done(service->snapshots, -job_id)) {
+      waiters_job_ended(service->waiters, job_id);
+    }
+    return MHD_YES;
+  }
   struct job_record record;
   bool gone = store_job(service->store, job_id, &record, NULL) != STATUS_OK;
   if (gone || job_state_terminal(record.state)) {

@@ -10,6 +10,7 @@
 #include <sys/types.h>
 
 #include "server/base/caller.h"
+#include "server/exec/disk.h"
 #include "server/exec/pool.h"
 #include "server/http/url.h"
 #include "server/store/store.h"
@@ -23,6 +24,7 @@ struct connections;
 struct http_meter;
 struct isolation;
 struct job_reader;
+struct snapshots;
 struct waiters;
 
 enum { HTTP_BODY_MAX = 1 << 20, HTTP_WAIT_MAX_S = 60, CLIENT_SIZE = 46 };
@@ -31,7 +33,9 @@ enum { HTTP_BODY_MAX = 1 << 20, HTTP_WAIT_MAX_S = 60, CLIENT_SIZE = 46 };
 struct service {
   struct store *store;
   struct pool *pool;
+  struct disk *disk;
   struct waiters *waiters;
+  struct snapshots *snapshots;       /* copies of the database */
   struct feed *feed;                 /* the stream of events */
   struct answers *answers;           /* kept answers */
   struct access *access;             /* who may come in */
@@ -65,7 +69,7 @@ struct request {
   struct url url;
   const char *known_query;   /* names of the query parameters of the route, NULL: whatever */
   const char *parameters[2]; /* of the route, in order */
-  int64_t job_id;            /* of the job that the request waits for */
+  int64_t job_id;            /* of the job that the request waits for; negative: of a copy */
   bool job_is_new;           /* the request made that job: the reply says where it is */
   char *body;                /* NUL-terminated; NULL when empty */
   size_t body_size;
@@ -100,7 +104,8 @@ struct reply {
   } headers[REPLY_HEADERS_MAX];
   size_t header_count;
   bool close; /* end the connection afterwards */
-  /* Instead of replying now: call `then` once the job is terminal or the time is over. */
+  /* Instead of replying now: call `then` once the job is terminal (or, when negative, the copy of
+   * the database with that ticket is made) or the time is over. */
   int64_t wait_job_id;
   int64_t wait_ms;
   handler *then;
@@ -132,6 +137,9 @@ void reply_file(struct reply *reply, const char *content_type, const char *path)
 
 /* Replies with a stream; stream->done is called in any case. */
 void reply_stream(struct reply *reply, const char *content_type, const struct reply_stream *stream);
+/* The same with a file of a job: 410 with the reason when the job's files were removed. */
+void reply_job_file(const struct request *request, struct reply *reply, const char *content_type,
+                    int64_t job_id, const char *path);
 
 /* Replies with an RFC 9457 problem of an HTTP status of its own. */
 void reply_problem(struct reply *reply, unsigned status, const char *code, const char *format, ...)

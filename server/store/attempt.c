@@ -159,8 +159,7 @@ static enum status result_insert(sqlite3 *db, const struct attempt_outcome *outc
 
 /* The end as it counts for the job: a job being cancelled is cancelled however its worker ended,
  * and a worker lost once too often is a failure. */
-static enum job_state end_state(enum attempt_end end, enum job_state before, int64_t failures,
-                                int64_t attempt) {
+static enum job_state end_state(enum attempt_end end, enum job_state before, int64_t failures) {
   if (before == JOB_STATE_CANCELLING) {
     return JOB_STATE_CANCELLED;
   }
@@ -172,8 +171,7 @@ static enum job_state end_state(enum attempt_end end, enum job_state before, int
   case ATTEMPT_REQUEUED:
     return JOB_STATE_QUEUED;
   case ATTEMPT_WORKER_LOST:
-    return failures >= STORE_FAILURES_MAX || attempt >= STORE_ATTEMPTS_MAX ? JOB_STATE_FAILED
-                                                                           : JOB_STATE_RETRY_WAIT;
+    return failures >= STORE_FAILURES_MAX ? JOB_STATE_FAILED : JOB_STATE_RETRY_WAIT;
   case ATTEMPT_CANCELLED: /* asked for by nobody that the database knows */
   case ATTEMPT_FAILED:
     break;
@@ -204,7 +202,7 @@ static enum status attempt_apply(sqlite3 *db, const struct attempt_outcome *outc
                                  enum job_state before, int64_t failures, enum job_state *state,
                                  struct error *error) {
   int64_t now = clock_unix_ms();
-  *state = end_state(outcome->end, before, failures, outcome->attempt);
+  *state = end_state(outcome->end, before, failures);
   bool cancelled = *state == JOB_STATE_CANCELLED;
   bool lost = outcome->end == ATTEMPT_WORKER_LOST;
   enum status status = attempt_close(db, outcome, *state, now, error);
@@ -269,7 +267,8 @@ enum status store_recover(struct store *store, int64_t *count, struct error *err
     status = sql_run(db, error,
                      "UPDATE job SET state = 'failed', reason_code = 'too_many_attempts', "
                      "message = 'Every attempt was lost.', finished_ms = ? "
-                     "WHERE state IN ('starting', 'running') AND attempt >= ?",
+                     "WHERE state IN ('starting', 'running') AND (SELECT count(*) FROM attempt "
+                     "WHERE job_id = job.id AND outcome = 'lost') >= ?",
                      "ii", now, (int64_t)STORE_ATTEMPTS_MAX);
     *count += sqlite3_changes(db);
   }

@@ -22,6 +22,7 @@ struct store {
   bool event_written;    /* by the open transaction; under the writer's mutex, like the two below */
   void (*event_committed)(void *context);
   void *event_context;
+  int64_t changes_before; /* of the writer, when its transaction began */
   sqlite3 *readers[STORE_READERS];
   bool reader_busy[STORE_READERS];
   pthread_mutex_t reader_mutex;
@@ -29,7 +30,14 @@ struct store {
   struct store_meter meter;
   struct units *units; /* for values in SI */
   struct group *group; /* of submissions that are committed together */
+  pthread_mutex_t health_mutex;
+  struct error health; /* of writing: STATUS_OK, or how the last transaction failed */
 };
+
+/* Opens one connection and runs its settings, a list of pragmas. *db is the caller's to close, also
+ * after a failure. */
+enum status store_connect(const char *path, int flags, const char *settings, sqlite3 **db,
+                          struct error *error);
 
 /* Takes a connection for reading, waiting for a free one, with a read transaction open: all that
  * is read until store_read_end is one consistent state. NULL and *error on failure. */
@@ -52,8 +60,15 @@ void store_meter_write(struct store *store, enum status status);
 enum status submission_write(struct store *store, const struct submission *submission, int64_t *id,
                              bool *replayed, struct error *error);
 
+/* Notes how a transaction ended; one that wrote nothing does not show that writing works. Reasons
+ * other than those of the disk are passed over. */
+void store_health_note(struct store *store, enum status status, bool wrote, const char *reason);
+
 /* Runs the migrations that the database lacks, each in a transaction of its own. */
 enum status store_migrate(sqlite3 *writer, struct error *error);
+
+/* The number of the newest migration that this program knows. */
+int store_migrate_newest(void);
 
 /* Reads the state of a job inside a write transaction. STATUS_NOT_FOUND. */
 enum status store_state_of(sqlite3 *db, int64_t id, enum job_state *state, struct error *error);

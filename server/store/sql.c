@@ -1,16 +1,37 @@
 #include "server/store/sql.h"
 
 #include <assert.h>
+#include <errno.h>
 #include <stdarg.h>
 #include <string.h>
 
+enum status sql_status(int code, int system_code) {
+  switch (code & 0xff) {
+  case SQLITE_CONSTRAINT:
+    return STATUS_CONFLICT;
+  case SQLITE_NOMEM:
+    return STATUS_NO_MEMORY;
+  case SQLITE_TOOBIG:
+    return STATUS_TOO_LARGE;
+  case SQLITE_FULL:
+    return STATUS_NO_SPACE;
+  case SQLITE_BUSY:
+  case SQLITE_LOCKED:
+    return STATUS_BUSY;
+  case SQLITE_CORRUPT:
+  case SQLITE_NOTADB:
+    return STATUS_DAMAGED;
+  default: /* growing the index of the log fails as an I/O error: only errno tells why */
+    return system_code == ENOSPC || system_code == EDQUOT ? STATUS_NO_SPACE : STATUS_IO;
+  }
+}
+
 enum status sql_fail(sqlite3 *db, struct error *error) {
-  int code = sqlite3_errcode(db);
-  enum status status = STATUS_IO;
-  if (code == SQLITE_CONSTRAINT) {
-    status = STATUS_CONFLICT;
-  } else if (code == SQLITE_NOMEM) {
-    status = STATUS_NO_MEMORY;
+  int code = sqlite3_errcode(db), system_code = sqlite3_system_errno(db);
+  enum status status = sql_status(code, system_code);
+  if (code == SQLITE_IOERR && system_code != 0) {
+    return error_set(error, status, NULL, "Database: %s (%s).", sqlite3_errmsg(db),
+                     strerrordesc_np(system_code));
   }
   return error_set(error, status, NULL, "Database: %s.", sqlite3_errmsg(db));
 }

@@ -8,8 +8,13 @@
 #include "solver/base/error.h"
 
 /* Fills *error from the connection's last error: STATUS_CONFLICT for a broken constraint,
- * STATUS_NO_MEMORY, else STATUS_IO. */
+ * STATUS_NO_MEMORY, STATUS_TOO_LARGE, STATUS_NO_SPACE for a full disk, STATUS_BUSY when another
+ * program holds the file, STATUS_DAMAGED for a file that is no sound database, else STATUS_IO. */
 enum status sql_fail(sqlite3 *db, struct error *error);
+
+/* The status that stands for a result code of SQLite; system_code: errno of its last system call,
+ * or 0. */
+enum status sql_status(int code, int system_code);
 
 /* Prepares a statement and binds its parameters in order. types: one letter a parameter,
  * i (int64_t), d (double), t (const char *, NULL binds SQL NULL), n (nothing: SQL NULL).

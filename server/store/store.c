@@ -6,13 +6,19 @@
 
 #include "server/base/clock.h"
 #include "server/base/file.h"
+#include "server/base/log.h"
+#include "server/store/check.h"
 #include "server/store/connection.h"
 #include "server/store/group.h"
 #include "server/store/sql.h"
 #include "solver/base/units.h"
 
-static enum status connection_open(const char *path, int flags, const char *settings, sqlite3 **db,
-                                   struct error *error) {
+enum { CHECK_BUDGET_MS = 1000 };
+
+#define LOG_KEPT_BYTES "67108864" /* of the write-ahead log once it has been taken in */
+
+enum status store_connect(const char *path, int flags, const char *settings, sqlite3 **db,
+                          struct error *error) {
   int code = sqlite3_open_v2(path, db, flags | SQLITE_OPEN_NOMUTEX, NULL);
   if (!*db) {
     return error_set(error, STATUS_NO_MEMORY, NULL, "No memory for a database connection.");
@@ -21,10 +27,41 @@ static enum status connection_open(const char *path, int flags, const char *sett
       sqlite3_db_config(*db, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL) != SQLITE_OK ||
       sqlite3_db_config(*db, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL) != SQLITE_OK ||
       sqlite3_exec(*db, settings, NULL, NULL, NULL) != SQLITE_OK) {
-    return error_set(error, STATUS_IO, NULL, "Cannot open the database %s: %s.", path,
-                     sqlite3_errmsg(*db));
+    return error_set(error, sql_status(sqlite3_errcode(*db), sqlite3_system_errno(*db)), NULL,
+                     "Cannot open the database %s: %s.", path, sqlite3_errmsg(*db));
   }
   return STATUS_OK;
+}
+
+/* Opens the connection for writing. Until the file is known to be a sound database of ours nothing
+ * in it is changed: not even its log is taken in. */
+static enum status writer_open(const char *path, sqlite3 **writer, struct error *error) {
+  bool complete = false;
+  enum status status =
+      store_connect(path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, "", writer, error);
+  if (status == STATUS_OK) {
+    sqlite3_db_config(*writer, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, NULL);
+    status = check_owner(*writer, path, store_migrate_newest(), error);
+  }
+  if (status == STATUS_OK) {
+    status = check_content(*writer, path, CHECK_BUDGET_MS, &complete, error);
+  }
+  if (status == STATUS_OK && !complete) {
+    log_line("the database is large: after %d ms its check was left unfinished; pneulabd --check "
+             "does all of it",
+             CHECK_BUDGET_MS);
+  }
+  if (status == STATUS_OK) {
+    sqlite3_db_config(*writer, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 0, NULL);
+    if (sqlite3_exec(*writer,
+                     "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;"
+                     "PRAGMA foreign_keys = ON; PRAGMA mmap_size = 0;"
+                     "PRAGMA journal_size_limit = " LOG_KEPT_BYTES,
+                     NULL, NULL, NULL) != SQLITE_OK) {
+      status = sql_fail(*writer, error);
+    }
+  }
+  return status == STATUS_OK ? store_migrate(*writer, error) : status;
 }
 
 enum status store_open(const char *directory, struct store **store, struct error *error) {
@@ -36,6 +73,7 @@ enum status store_open(const char *directory, struct store **store, struct error
   }
   pthread_mutex_init(&opened->writer_mutex, NULL);
   pthread_mutex_init(&opened->reader_mutex, NULL);
+  pthread_mutex_init(&opened->health_mutex, NULL);
   pthread_cond_init(&opened->reader_free, NULL);
   snprintf(path, sizeof path, "%s/pneulab.db", directory);
   enum status status = file_make_directory(directory, error);
@@ -46,18 +84,15 @@ enum status store_open(const char *directory, struct store **store, struct error
     status = error_set(error, STATUS_NO_MEMORY, NULL, "No memory for the store.");
   }
   if (status == STATUS_OK) {
-    status = connection_open(path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE,
-                             "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;"
-                             "PRAGMA foreign_keys = ON; PRAGMA mmap_size = 0;",
-                             &opened->writer, error);
+    status = check_file(directory, path, error);
   }
   if (status == STATUS_OK) {
-    status = store_migrate(opened->writer, error);
+    status = writer_open(path, &opened->writer, error);
   }
   for (int i = 0; i < STORE_READERS && status == STATUS_OK; i++) {
-    status = connection_open(path, SQLITE_OPEN_READWRITE,
-                             "PRAGMA query_only = ON; PRAGMA mmap_size = 0;", &opened->readers[i],
-                             error);
+    status = store_connect(path, SQLITE_OPEN_READWRITE,
+                           "PRAGMA query_only = ON; PRAGMA mmap_size = 0;", &opened->readers[i],
+                           error);
   }
   if (status != STATUS_OK) {
     store_close(opened);
@@ -78,6 +113,7 @@ void store_close(struct store *store) {
   group_destroy(store->group);
   units_destroy(store->units);
   pthread_cond_destroy(&store->reader_free);
+  pthread_mutex_destroy(&store->health_mutex);
   pthread_mutex_destroy(&store->reader_mutex);
   pthread_mutex_destroy(&store->writer_mutex);
   free(store);
@@ -127,9 +163,11 @@ void store_read_end(struct store *store, sqlite3 *reader) {
 enum status store_write_begin(struct store *store, struct error *error) {
   int64_t since_us = clock_monotonic_us();
   pthread_mutex_lock(&store->writer_mutex);
+  store->changes_before = sqlite3_total_changes64(store->writer);
   enum status status = sql_run(store->writer, error, "BEGIN IMMEDIATE", "");
   store_meter_wait(store, since_us, status == STATUS_OK);
   if (status != STATUS_OK) {
+    store_health_note(store, status, false, sqlite3_errmsg(store->writer));
     pthread_mutex_unlock(&store->writer_mutex);
   }
   return status;
@@ -139,6 +177,8 @@ enum status store_write_end(struct store *store, enum status status, struct erro
   if (status == STATUS_OK) {
     status = sql_run(store->writer, error, "COMMIT", "");
   }
+  bool wrote = sqlite3_total_changes64(store->writer) != store->changes_before;
+  store_health_note(store, status, wrote, sqlite3_errmsg(store->writer));
   if (status != STATUS_OK) {
     sql_run(store->writer, NULL, "ROLLBACK", "");
   }

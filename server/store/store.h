@@ -2,8 +2,9 @@
  *
  * All writes go through one connection behind a mutex; each function that writes is one durable
  * transaction (WAL, synchronous=FULL). Reads use a small set of query_only connections. Every
- * function may be called from any thread. Failures of the database are STATUS_IO or
- * STATUS_NO_MEMORY and leave it unchanged. */
+ * function may be called from any thread. Failures of the database are STATUS_IO, STATUS_NO_SPACE
+ * (full disk), STATUS_BUSY (another program holds it), STATUS_DAMAGED or STATUS_NO_MEMORY; they
+ * leave it unchanged, and what failed may be tried again. */
 #ifndef PNEULAB_STORE_STORE_H
 #define PNEULAB_STORE_STORE_H
 
@@ -19,12 +20,14 @@ struct store;
 
 enum {
   STORE_FAILURES_MAX = 2,  /* lost workers after which one more failure is final */
-  STORE_ATTEMPTS_MAX = 10, /* attempts of one job, for whatever reason they ended */
+  STORE_ATTEMPTS_MAX = 10, /* attempts of one job that may be lost with the daemon */
   STORE_LABELS_MAX = 8     /* label filters of one list query */
 };
 
-/* Opens or creates DIR/pneulab.db and brings its schema up to date. A database of a newer program
- * is refused with STATUS_CONFLICT. The caller owns *store. */
+/* Opens or creates DIR/pneulab.db and brings its schema up to date. Refused, with nothing changed
+ * and advice in *error: STATUS_CONFLICT for a database of a newer program or of another one,
+ * STATUS_DAMAGED for one that is no longer sound, or is missing beside files of jobs. The caller
+ * owns *store. */
 enum status store_open(const char *directory, struct store **store, struct error *error);
 void store_close(struct store *store);
 
@@ -210,8 +213,42 @@ enum status store_labels(struct store *store, int64_t id, json_t **labels, struc
 
 /* ------------------------------------------------------------------------------------------ */
 
-/* Writes a consistent copy of the database, of one moment, to an empty or absent file. */
-enum status store_snapshot(struct store *store, const char *path, struct error *error);
+/* Whether a copy under way is to be given up. */
+typedef bool snapshot_stop(void *context);
+
+/* Writes a consistent copy of the database, of one moment, to an empty or absent file; writers go
+ * on meanwhile. stop (or NULL) is asked every MiB: STATUS_CANCELLED when it says so. After a
+ * failure the file is the caller's to remove. */
+enum status store_snapshot(struct store *store, const char *path, snapshot_stop *stop,
+                           void *context, struct error *error);
+
+/* ---- with or without a daemon ------------------------------------------------------------ */
+
+/* Writes a consistent copy of DIR/pneulab.db to a file, beside a running daemon or without one. The
+ * file appears whole or not at all, checked and durable. Without `replace` an existing file is
+ * refused with STATUS_CONFLICT. */
+enum status store_backup(const char *directory, const char *path, bool replace,
+                         struct error *error);
+
+/* Puts a backup in the place of DIR/pneulab.db, after checking it; the caller holds the lock of the
+ * directory. The files that were there are kept: renamed to pneulab.db.replaced and so on. Without
+ * `replace` a database that is there is refused with STATUS_CONFLICT. */
+enum status store_restore(const char *directory, const char *path, bool replace,
+                          struct error *error);
+
+/* Checks all of DIR/pneulab.db, however long that takes. STATUS_DAMAGED or STATUS_CONFLICT with
+ * what was found. */
+enum status store_verify(const char *directory, struct error *error);
+
+/* Whether a status is a failure of the database that may pass: what failed is worth another try. */
+bool store_failed(enum status status);
+
+/* STATUS_OK while transactions can be written, else the status and reason of the last failure
+ * (STATUS_NO_SPACE, STATUS_IO, STATUS_DAMAGED). Waits for nobody. */
+enum status store_health(struct store *store, struct error *error);
+
+/* Writes one small durable transaction to see whether that works, and returns its status. */
+enum status store_probe(struct store *store, struct error *error);
 
 /* Writes the store's metrics in the text form of Prometheus. */
 void store_metrics(struct store *store, FILE *out);

@@ -14,6 +14,9 @@
   X(TOO_LARGE, "too_large", "a size limit was exceeded")                                           \
   X(NO_MEMORY, "no_memory", "memory ran out")                                                      \
   X(IO, "io_error", "reading or writing failed")                                                   \
+  X(NO_SPACE, "no_space", "the disk is full")                                                      \
+  X(BUSY, "database_busy", "another program holds the database")                                   \
+  X(DAMAGED, "database_damaged", "the database is damaged")                                        \
   X(DIVERGED, "diverged", "the iteration did not converge")                                        \
   X(INVERTED, "inverted_element", "an element turned inside out")                                  \
   X(CONTACT, "contact_cycling", "the contact did not settle")                                      \

@@ -69,7 +69,7 @@ check "results come from the last attempt" 0 "$(sql 'select count(*) from result
 
 # A second daemon on the same data is refused.
 "$BIN/pneulabd" --data "$DATA" --listen 127.0.0.1:0 2> "$WORK/second"
-check "second daemon" 1 $?
+check "second daemon" 4 $?
 check_match "its reason" "another pneulabd" "$(cat "$WORK/second")"
 
 # A cancelled job stays cancelled over a crash.

@@ -1,0 +1,29 @@
+#include <unistd.h>
+
+#include "server/base/clock.h"
+#include "server/http/service.h"
+#include "server/store/retention.h"
+
+void reply_job_file(const struct request *request, struct reply *reply, const char *content_type,
+                    int64_t job_id, const char *path) {
+  struct error error;
+  char why[8], when[CLOCK_TEXT_SIZE];
+  int64_t removed_ms;
+  if (access(path, F_OK) == 0) {
+    reply_file(reply, content_type, path);
+    return;
+  }
+  if (store_files_removed(request->service->store, job_id, &removed_ms, why, &error) != STATUS_OK) {
+    reply_error(reply, &error);
+  } else if (removed_ms == 0) {
+    reply_problem(reply, 404, "not_found", "The file is not there.");
+  } else {
+    clock_format(removed_ms, when);
+    reply_problem(reply, 410, "files_removed",
+                  "The files of job %lld were removed at %s: %s. Its result, metrics and samples "
+                  "are kept.",
+                  (long long)job_id, when,
+                  why[0] == 'a' ? "they were older than this server keeps files (--keep-files-days)"
+                                : "newer files needed the room (--keep-files-size)");
+  }
+}

@@ -1,0 +1,190 @@
+#include "server/store/retention.h"
+
+#include <stdio.h>
+
+#include "server/base/clock.h"
+#include "server/store/connection.h"
+#include "server/store/sql.h"
+
+#define WITH_FILES "finished_ms IS NOT NULL AND files_removed_ms IS NULL AND attempt > 0"
+
+/* Reads rows (id, attempt, bytes) into the list. */
+static enum status files_read(sqlite3_stmt *statement, struct job_files *list, size_t room,
+                              size_t *count, struct error *error) {
+  int row = 1;
+  enum status status = STATUS_OK;
+  while (*count < room && (status = sql_step(statement, &row, error)) == STATUS_OK && row) {
+    list[(*count)++] = (struct job_files){.job_id = sqlite3_column_int64(statement, 0),
+                                          .attempts = sqlite3_column_int64(statement, 1),
+                                          .bytes = sqlite3_column_int64(statement, 2)};
+  }
+  return status;
+}
+
+enum status store_files_unmeasured(struct store *store, struct job_files *list, size_t room,
+                                   size_t *count, struct error *error) {
+  struct error reason = {.status = STATUS_IO};
+  *count = 0;
+  sqlite3 *db = store_read_begin(store, &reason);
+  if (!db) {
+    return error_set(error, reason.status, NULL, "%s", reason.message);
+  }
+  sqlite3_stmt *statement;
+  enum status status = sql_prepare(db, &statement, error,
+                                   "SELECT id, attempt, 0 FROM job INDEXED BY job_with_files "
+                                   "WHERE " WITH_FILES " AND files_bytes IS NULL LIMIT ?",
+                                   "i", (int64_t)room);
+  if (status == STATUS_OK) {
+    status = files_read(statement, list, room, count, error);
+    sql_done(statement);
+  }
+  store_read_end(store, db);
+  return status;
+}
+
+enum status store_files_measured(struct store *store, const struct job_files *list, size_t count,
+                                 struct error *error) {
+  enum status status = store_write_begin(store, error);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  for (size_t i = 0; i < count && status == STATUS_OK; i++) {
+    status = sql_run(store->writer, error, "UPDATE job SET files_bytes = ? WHERE id = ?", "ii",
+                     list[i].bytes, list[i].job_id);
+  }
+  return store_write_end(store, status, error);
+}
+
+static enum status files_sum(sqlite3 *db, int64_t *bytes, struct error *error) {
+  sqlite3_stmt *statement;
+  int row = 0;
+  enum status status = sql_prepare(db, &statement, error,
+                                   "SELECT coalesce(sum(files_bytes), 0) FROM job INDEXED BY "
+                                   "job_with_files WHERE " WITH_FILES,
+                                   "");
+  if (status == STATUS_OK) {
+    status = sql_step(statement, &row, error);
+    *bytes = sqlite3_column_int64(statement, 0);
+    sql_done(statement);
+  }
+  return status;
+}
+
+/* The oldest jobs with files that ended before a moment (0: whenever). */
+static enum status files_oldest(sqlite3 *db, int64_t before_ms, struct job_files *list, size_t room,
+                                size_t *count, struct error *error) {
+  sqlite3_stmt *statement;
+  enum status status =
+      sql_prepare(db, &statement, error,
+                  "SELECT id, attempt, coalesce(files_bytes, 0) FROM job INDEXED BY job_with_files "
+                  "WHERE " WITH_FILES " AND (? = 0 OR finished_ms < ?) "
+                  "ORDER BY finished_ms, id LIMIT ?",
+                  "iii", before_ms, before_ms, (int64_t)room);
+  if (status == STATUS_OK) {
+    status = files_read(statement, list, room, count, error);
+    sql_done(statement);
+  }
+  return status;
+}
+
+/* Lists the jobs whose files are to go by one of the limits. */
+static enum status files_due(sqlite3 *db, const struct retention *limits, int64_t now,
+                             struct job_files *list, size_t room, size_t *count, const char **why,
+                             struct error *error) {
+  enum status status = STATUS_OK;
+  *count = 0;
+  *why = "age";
+  if (limits->keep_ms > 0) {
+    status = files_oldest(db, now - limits->keep_ms, list, room, count, error);
+  }
+  if (status == STATUS_OK && *count == 0 && limits->keep_bytes > 0) {
+    int64_t bytes = 0;
+    size_t listed = 0;
+    *why = "size";
+    status = files_sum(db, &bytes, error);
+    if (status == STATUS_OK && bytes > limits->keep_bytes) {
+      status = files_oldest(db, 0, list, room, &listed, error);
+    }
+    while (*count < listed && bytes > limits->keep_bytes) {
+      bytes -= list[(*count)++].bytes;
+    }
+  }
+  return status;
+}
+
+enum status store_files_expire(struct store *store, const struct retention *limits,
+                               struct job_files *list, size_t room, size_t *count,
+                               struct error *error) {
+  int64_t now = clock_unix_ms();
+  const char *why;
+  struct error reason = {.status = STATUS_IO};
+  *count = 0;
+  sqlite3 *db = store_read_begin(store, &reason);
+  if (!db) {
+    return error_set(error, reason.status, NULL, "%s", reason.message);
+  }
+  enum status status = files_due(db, limits, now, list, room, count, &why, error);
+  store_read_end(store, db);
+  if (status != STATUS_OK || *count == 0) {
+    return status;
+  }
+  status = store_write_begin(store, error);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  for (size_t i = 0; i < *count && status == STATUS_OK; i++) {
+    status = sql_run(store->writer, error,
+                     "UPDATE job SET files_removed_ms = ?, files_removed_why = ? "
+                     "WHERE id = ? AND " WITH_FILES,
+                     "iti", now, why, list[i].job_id);
+  }
+  return store_write_end(store, status, error);
+}
+
+enum status store_files_kept(struct store *store, int64_t job_id, int64_t attempt, bool *kept,
+                             struct error *error) {
+  struct error reason = {.status = STATUS_IO};
+  sqlite3 *db = store_read_begin(store, &reason);
+  if (!db) {
+    return error_set(error, reason.status, NULL, "%s", reason.message);
+  }
+  sqlite3_stmt *statement;
+  int row = 0;
+  enum status status =
+      sql_prepare(db, &statement, error,
+                  "SELECT 1 FROM job WHERE id = ? AND attempt >= ? AND files_removed_ms IS NULL",
+                  "ii", job_id, attempt);
+  if (status == STATUS_OK) {
+    status = sql_step(statement, &row, error);
+    sql_done(statement);
+  }
+  store_read_end(store, db);
+  *kept = row != 0;
+  return status;
+}
+
+enum status store_files_removed(struct store *store, int64_t job_id, int64_t *removed_ms,
+                                char why[8], struct error *error) {
+  struct error reason = {.status = STATUS_IO};
+  sqlite3 *db = store_read_begin(store, &reason);
+  if (!db) {
+    return error_set(error, reason.status, NULL, "%s", reason.message);
+  }
+  sqlite3_stmt *statement;
+  int row = 0;
+  enum status status = sql_prepare(
+      db, &statement, error,
+      "SELECT coalesce(owner.files_removed_ms, 0), owner.files_removed_why FROM job "
+      "JOIN job AS owner ON owner.id = coalesce(job.reused_from, job.id) WHERE job.id = ?",
+      "i", job_id);
+  if (status == STATUS_OK) {
+    status = sql_step(statement, &row, error);
+  }
+  if (status == STATUS_OK) {
+    *removed_ms = row ? sqlite3_column_int64(statement, 0) : 0;
+    snprintf(why, 8, "%s", row ? sql_text(statement, 1) : "");
+  }
+  sql_done(statement);
+  store_read_end(store, db);
+  return status;
+}
