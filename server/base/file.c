@@ -5,10 +5,12 @@
 #include <fts.h>
 #include <ftw.h>
 #include <limits.h>
+#include <linux/openat2.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 static enum status file_fail(struct error *error, const char *doing, const char *path) {
@@ -103,6 +105,24 @@ done:
     close(fd);
   }
   return status;
+}
+
+int file_open_below(const char *directory, const char *path, size_t *size) {
+  struct open_how how = {.flags = O_RDONLY | O_CLOEXEC | O_NONBLOCK,
+                         .resolve = RESOLVE_BENEATH | RESOLVE_NO_SYMLINKS};
+  struct stat info;
+  int at = open(directory, O_PATH | O_DIRECTORY | O_CLOEXEC);
+  if (at < 0) {
+    return -1;
+  }
+  int fd = (int)syscall(SYS_openat2, at, path, &how, sizeof how);
+  close(at);
+  if (fd >= 0 && (fstat(fd, &info) != 0 || !S_ISREG(info.st_mode))) {
+    close(fd);
+    return -1;
+  }
+  *size = fd >= 0 ? (size_t)info.st_size : 0;
+  return fd;
 }
 
 enum status file_write(const char *path, const char *data, size_t size, struct error *error) {

@@ -20,6 +20,11 @@ void file_remove_tree(const char *path);
 enum status file_read(const char *path, size_t limit, char **data, size_t *size,
                       struct error *error);
 
+/* Opens a regular file below a directory for reading: no part of `path` may be a link or lead
+ * upwards, so that what a worker leaves in its folder cannot show other files; a pipe does not keep
+ * anybody waiting. -1 when there is none. The descriptor is the caller's; *size gets its length. */
+int file_open_below(const char *directory, const char *path, size_t *size);
+
 /* Writes the whole file (mode 0644), replacing an old one. STATUS_IO on failure. */
 enum status file_write(const char *path, const char *data, size_t size, struct error *error);
 

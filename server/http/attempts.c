@@ -40,7 +40,7 @@ void attempts_log(struct request *request, struct reply *reply) {
     return;
   }
   run_directory(id, attempt, name);
-  int length = snprintf(path, sizeof path, "%s/%s/log.txt", request->service->data, name);
+  int length = snprintf(path, sizeof path, "%s/log.txt", name);
   if (length > 0 && (size_t)length < sizeof path) {
     reply_job_file(request, reply, "text/plain; charset=utf-8", id, path);
   }

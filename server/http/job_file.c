@@ -1,5 +1,3 @@
-#include <unistd.h>
-
 #include "server/base/clock.h"
 #include "server/http/service.h"
 #include "server/store/retention.h"
@@ -9,15 +7,13 @@ void reply_job_file(const struct request *request, struct reply *reply, const ch
   struct error error;
   char why[8], when[CLOCK_TEXT_SIZE];
   int64_t removed_ms;
-  if (access(path, F_OK) == 0) {
-    reply_file(reply, content_type, path);
+  reply_file(reply, content_type, request->service->data, path);
+  if (reply->fd >= 0) {
     return;
   }
   if (store_files_removed(request->service->store, job_id, &removed_ms, why, &error) != STATUS_OK) {
     reply_error(reply, &error);
-  } else if (removed_ms == 0) {
-    reply_problem(reply, 404, "not_found", "The file is not there.");
-  } else {
+  } else if (removed_ms != 0) {
     clock_format(removed_ms, when);
     reply_problem(reply, 410, "files_removed",
                   "The files of job %lld were removed at %s: %s. Its result, metrics and samples "

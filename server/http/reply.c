@@ -1,11 +1,10 @@
-#include <fcntl.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
+#include "server/base/file.h"
 #include "server/http/answers.h"
 #include "server/http/service.h"
 #include "solver/job/json.h"
@@ -105,18 +104,16 @@ void reply_kept(struct reply *reply, const char *content_type, struct answer *an
   reply->content_type = content_type;
 }
 
-void reply_file(struct reply *reply, const char *content_type, const char *path) {
-  struct stat info;
-  int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
-  if (fd < 0 || fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) {
-    if (fd >= 0) {
-      close(fd);
-    }
+void reply_file(struct reply *reply, const char *content_type, const char *directory,
+                const char *path) {
+  size_t size;
+  int fd = file_open_below(directory, path, &size);
+  if (fd < 0) {
     reply_problem(reply, 404, "not_found", "The file is not there.");
     return;
   }
   reply->fd = fd;
-  reply->size = (size_t)info.st_size;
+  reply->size = size;
   reply->content_type = content_type;
 }
 

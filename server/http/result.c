@@ -61,8 +61,12 @@ void result_metrics(struct request *request, struct reply *reply) {
   job_record_clear(&record);
 }
 
-/* Writes a text as one CSV field (RFC 4180). */
+/* Writes a text as one CSV field (RFC 4180). One that a spreadsheet would take for a formula gets
+ * an apostrophe. */
 static void csv_text(FILE *out, const char *text) {
+  if (strchr("=+-@\t\r", text[0]) && text[0]) {
+    fputc('\'', out);
+  }
   if (!strpbrk(text, ",\"\r\n")) {
     fputs(text, out);
     return;
@@ -144,13 +148,11 @@ void result_samples(struct request *request, struct reply *reply) {
   }
 }
 
+/* Only types that no browser runs: XML, for one, may carry scripts. */
 static const char *artifact_type(const char *name) {
   const char *dot = strrchr(name, '.');
   if (dot && strcmp(dot, ".json") == 0) {
     return "application/json";
-  }
-  if (dot && (strcmp(dot, ".vtu") == 0 || strcmp(dot, ".pvd") == 0)) {
-    return "application/xml";
   }
   if (dot && strcmp(dot, ".csv") == 0) {
     return "text/csv; charset=utf-8";
@@ -195,10 +197,13 @@ void result_artifact(struct request *request, struct reply *reply) {
   if (store_artifact(service->store, id, name, &error) != STATUS_OK) {
     reply_error(reply, &error);
   } else {
-    int length = snprintf(path, sizeof path, "%s/%s/out/%s", service->data, directory, name);
+    int length = snprintf(path, sizeof path, "%s/out/%s", directory, name);
     if (length > 0 && (size_t)length < sizeof path) {
       reply_job_file(request, reply, artifact_type(name), id, path);
       artifact_mark(request, reply);
+      if (reply->status == 200) {
+        reply_header(reply, "Content-Disposition", "attachment; filename=\"%s\"", name);
+      }
     }
   }
   free(directory);

@@ -132,14 +132,17 @@ void reply_static(struct reply *reply, const char *content_type, const void *dat
 /* Replies with a kept answer, whose use is taken over. */
 void reply_kept(struct reply *reply, const char *content_type, struct answer *answer);
 
-/* Replies with a regular file, which is not followed if it is a link; 404 when it is missing. */
-void reply_file(struct reply *reply, const char *content_type, const char *path);
+/* Replies with a regular file below a directory, as of file_open_below; 404 when it is missing. */
+void reply_file(struct reply *reply, const char *content_type, const char *directory,
+                const char *path);
+
+/* The same with a file of a job, `path` being relative to the data directory: 410 with the reason
+ * when the job's files were removed. */
+void reply_job_file(const struct request *request, struct reply *reply, const char *content_type,
+                    int64_t job_id, const char *path);
 
 /* Replies with a stream; stream->done is called in any case. */
 void reply_stream(struct reply *reply, const char *content_type, const struct reply_stream *stream);
-/* The same with a file of a job: 410 with the reason when the job's files were removed. */
-void reply_job_file(const struct request *request, struct reply *reply, const char *content_type,
-                    int64_t job_id, const char *path);
 
 /* Replies with an RFC 9457 problem of an HTTP status of its own. */
 void reply_problem(struct reply *reply, unsigned status, const char *code, const char *format, ...)

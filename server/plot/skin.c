@@ -1,16 +1,16 @@
 #include "server/plot/skin.h"
 
-#include <errno.h>
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
+#include <unistd.h>
 
+#include "server/base/file.h"
 #include "server/plot/data.h"
 
-enum { FILE_LIMIT = 64 << 20, PATH_LIMIT = 4096 };
+enum { FILE_LIMIT = 64 << 20 };
 
 static enum status damaged(struct error *error, const char *what) {
   return error_set(error, STATUS_SYNTAX, NULL, "surface.json is damaged: %s", what);
@@ -18,26 +18,20 @@ static enum status damaged(struct error *error, const char *what) {
 
 static enum status load(const char *directory, json_t **root, struct error *error) {
   enum status status = STATUS_OK;
-  char path[PATH_LIMIT];
-  FILE *file = NULL;
-  if (directory) {
-    int length = snprintf(path, sizeof path, "%s/surface.json", directory);
-    if (length > 0 && length < PATH_LIMIT) {
-      file = fopen(path, "rb");
-    }
+  size_t size = 0;
+  int fd = directory ? file_open_below(directory, "surface.json", &size) : -1;
+  FILE *file = fd >= 0 ? fdopen(fd, "rb") : NULL;
+  if (fd >= 0 && !file) {
+    close(fd);
   }
   if (!file) {
     return error_set(error, STATUS_NOT_FOUND, NULL,
                      "the job left no surface.json to draw the deformed body from");
   }
-  struct stat info;
   json_error_t problem;
-  if (fstat(fileno(file), &info) != 0 || !S_ISREG(info.st_mode)) {
-    status = error_set(error, STATUS_IO, NULL, "surface.json cannot be read");
-  } else if (info.st_size > FILE_LIMIT) {
-    status =
-        error_set(error, STATUS_TOO_LARGE, NULL, "surface.json has %lld bytes; up to %d are drawn",
-                  (long long)info.st_size, FILE_LIMIT);
+  if (size > FILE_LIMIT) {
+    status = error_set(error, STATUS_TOO_LARGE, NULL,
+                       "surface.json has %zu bytes; up to %d are drawn", size, FILE_LIMIT);
   } else if (!(*root = json_loadf(file, JSON_REJECT_DUPLICATES, &problem))) {
     status = damaged(error, problem.text);
   }

@@ -32,7 +32,7 @@ start_daemon() {
   "$BIN/pneulabd" --data "$DATA" --listen 127.0.0.1:0 "$@" > "$WORK/stdout" 2>> "$WORK/stderr" &
   DAEMON_PID=$!
   for _ in $(seq 200); do
-    if grep -q '^listening on http://' "$WORK/stdout"; then
+    if grep -q '^listening on https\?://' "$WORK/stdout"; then
       URL=$(sed -n 's/^listening on //p' "$WORK/stdout")
       PORT=${URL##*:}
       return 0

@@ -26,8 +26,8 @@ for link in $(field '.links.plots[], .links.artifacts[]'); do
   check "GET $link" 200 "$CODE"
 done
 type_of() { curl -s -o "$WORK/file" -w '%{content_type}' "$URL/api/v1/jobs/$id/artifacts/$1"; }
-check "type of VTU" application/xml "$(type_of volume-0002.vtu)"
-check "type of PVD" application/xml "$(type_of surface.pvd)"
+check "type of VTU, which no browser shows" application/octet-stream "$(type_of volume-0002.vtu)"
+check "type of PVD" application/octet-stream "$(type_of surface.pvd)"
 check "type of the deck" 'text/plain; charset=utf-8' "$(type_of model.inp)"
 check "type of the midlines" 'text/csv; charset=utf-8' "$(type_of midlines.csv)"
 check "the table of the solver is that of the interface" "$(curl -s "$URL/api/v1/jobs/$id/samples.csv" | wc -l)" \
