@@ -1,12 +1,13 @@
 #!/bin/sh
-# Includes only point downwards: base < job < mesh < fe, hlpv, axi < post, verify, material, identify, snap, bistable < run,
-# study within the solver; the server uses of the solver only base and job; the solver never sees the server.
+# Includes only point downwards: base < job, explore < mesh < fe, hlpv, axi < post, verify, material, identify, snap, bistable < run,
+# study within the solver; the server uses of the solver only base, job and explore; the solver never sees the server.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 rank() {
   case $1 in
   solver/base/*) echo 1 ;;
   solver/job/*) echo 2 ;;
+  solver/explore/*) echo 2 ;;
   solver/mesh/*) echo 3 ;;
   solver/fe/* | solver/hlpv/* | solver/axi/*) echo 4 ;;
   solver/post/* | solver/verify/* | solver/material/* | solver/identify/* | solver/snap/* | solver/bistable/*) echo 5 ;;
@@ -25,7 +26,7 @@ for file in $(find solver server -name '*.[ch]' | sort); do
     count=$((count + 1))
     to=$(rank "$included")
     if [ "$from" = 7 ] && [ "$to" -ge 3 ] && [ "$to" -le 6 ]; then
-      echo "$file includes $included: the server uses only base and job of the solver"
+      echo "$file includes $included: the server uses only base, job and explore of the solver"
       bad=1
     elif [ "$to" -gt "$from" ]; then
       echo "$file includes $included: includes point downwards"
