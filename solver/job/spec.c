@@ -13,6 +13,7 @@
 #include "solver/job/reader.h"
 #include "solver/job/schema.h"
 #include "solver/job/study.h"
+#include "solver/job/study_sample.h"
 
 struct job_reader {
   struct units *units;
@@ -241,12 +242,15 @@ static enum status read_verify(const struct reader *reader, const json_t *docume
 /* ---- a study ------------------------------------------------------------------------------ */
 
 static enum status read_study(const struct job_reader *job_reader, const struct reader *reader,
-                              const json_t *document, struct job_spec *spec) {
+                              json_t *document, struct job_spec *spec) {
   spec->kind = JOB_STUDY;
   reader_copy(spec->name, sizeof spec->name, json_string_value(json_object_get(document, "name")));
   spec->timeout_s = reader_member(reader, document, "timeout", "s", 0.0);
-  struct study study;
-  enum status status = study_expand(job_reader, document, false, &study, reader->error);
+  struct study study = {.count = 0};
+  enum status status = study_sample(reader, document);
+  if (status == STATUS_OK) {
+    status = study_expand(job_reader, document, false, &study, reader->error);
+  }
   study_release(&study);
   return status;
 }
@@ -259,7 +263,7 @@ static enum status read_snap(const struct reader *reader, const json_t *document
 }
 
 static enum status read_kind(const struct job_reader *job_reader, const struct reader *reader,
-                             const json_t *document, struct job_spec *spec) {
+                             json_t *document, struct job_spec *spec) {
   const char *kind = json_string_value(json_object_get(document, "kind"));
   return strcmp(kind, "verify") == 0           ? read_verify(reader, document, spec)
          : strcmp(kind, "study") == 0          ? read_study(job_reader, reader, document, spec)

@@ -82,8 +82,10 @@ static void add_parameter(struct draft *draft, const json_t *document, size_t wh
   json_pointer_key(&change->origin, "parameters");
   json_pointer_index(&change->origin, which);
   draft->at = change->origin;
-  json_pointer_key(&change->origin, "values");
-  json_pointer_index(&change->origin, value);
+  if (!study_is_spread(document)) { /* the value is in the text of the study */
+    json_pointer_key(&change->origin, "values");
+    json_pointer_index(&change->origin, value);
+  }
   add_to_name(draft, name ? name : last_part(pointer), given);
 }
 
@@ -115,6 +117,12 @@ static void draft_member(struct draft *draft, const json_t *document, size_t ind
   }
   const json_t *parameters = json_object_get(document, "parameters");
   size_t count = json_array_size(parameters), rest = index;
+  if (study_is_spread(document)) {
+    for (size_t which = 0; which < count; which++) {
+      add_parameter(draft, document, which, index);
+    }
+    return;
+  }
   if (!study_is_grid(document)) {
     size_t which = 0;
     for (; rest >= study_value_count(json_array_get(parameters, which)); which++) {

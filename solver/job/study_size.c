@@ -11,6 +11,12 @@ bool study_is_grid(const json_t *document) {
   return strcmp(json_string_value(json_object_get(document, "sampling")), "grid") == 0;
 }
 
+bool study_is_spread(const json_t *document) {
+  const char *sampling = json_string_value(json_object_get(document, "sampling"));
+  return strcmp(sampling, "latin-hypercube") == 0 || strcmp(sampling, "sobol") == 0 ||
+         strcmp(sampling, "halton") == 0;
+}
+
 size_t study_value_count(const json_t *parameter) {
   return json_array_size(json_object_get(parameter, "values"));
 }
@@ -31,6 +37,9 @@ static size_t members_max(const json_t *document) {
 size_t study_count(const json_t *document) {
   if (study_is_list(document)) {
     return json_array_size(json_object_get(document, "designs"));
+  }
+  if (study_is_spread(document)) {
+    return (size_t)json_integer_value(json_object_get(document, "size"));
   }
   size_t index, sum = 0, product = 1, most = members_max(document);
   json_t *parameter;
@@ -64,7 +73,7 @@ static size_t longest_change(const json_t *document) {
 static enum status check_text(const json_t *document, size_t count, struct error *error) {
   size_t base =
       text_size(json_object_get(document, "base")) + text_size(json_object_get(document, "set"));
-  size_t change = study_has_light_members(document)
+  size_t change = study_has_light_members(document) || study_is_spread(document)
                       ? longest_change(document)
                       : text_size(json_object_get(document, "parameters"));
   int most = study_has_light_members(document) ? STUDY_LIGHT_TEXT_MAX : STUDY_TEXT_MAX;
@@ -83,32 +92,58 @@ static enum status check_text(const json_t *document, size_t count, struct error
   return STATUS_OK;
 }
 
-enum status study_check_size(const json_t *document, struct error *error) {
-  bool list = study_is_list(document);
-  const char *wanted = list ? "designs" : "parameters", *other = list ? "parameters" : "designs";
+/* The keys that only some samplings have. */
+static enum status check_keys(const json_t *document, struct error *error) {
   const char *sampling = json_string_value(json_object_get(document, "sampling"));
+  bool list = study_is_list(document), spread = study_is_spread(document);
+  bool sequence = spread && strcmp(sampling, "latin-hypercube") != 0;
+  const struct {
+    const char *key, *example;
+    bool needed, allowed;
+  } keys[] = {
+      {"designs", "[{\"set\": {\"/actuator/taper/top\": \"1 deg\"}}]", list, list},
+      {"parameters",
+       spread ? "[{\"pointer\": \"/actuator/chamber_gap\", \"from\": \"1 mm\", \"to\": \"3 mm\"}]"
+              : "[{\"pointer\": \"/actuator/chamber_gap\", \"values\": [\"1 mm\"]}]",
+       !list, !list},
+      {"size", "64", spread, spread},
+      {"seed", "1", false, spread},
+      {"constraints", "[{\"sum\": {\"/actuator/top_wall\": 1}, \"at_most\": \"3 mm\"}]", false,
+       sequence},
+  };
   char pointer[32];
-  if (!json_object_get(document, wanted)) {
-    return error_set(
-        error, STATUS_INVALID, NULL,
-        "the key \"%s\" is missing, which the sampling \"%s\" needs\nan array\n{\"%s\": %s}",
-        wanted, sampling, wanted,
-        list ? "[{\"set\": {\"/actuator/taper/top\": \"1 deg\"}}]"
-             : "[{\"pointer\": \"/actuator/chamber_gap\", \"values\": [\"1 mm\"]}]");
+  for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
+    bool there = json_object_get(document, keys[i].key) != NULL;
+    if (keys[i].needed && !there) {
+      return error_set(error, STATUS_INVALID, NULL,
+                       "the key \"%s\" is missing: the sampling \"%s\" needs it; for example %s",
+                       keys[i].key, sampling, keys[i].example);
+    }
+    if (there && !keys[i].allowed) {
+      snprintf(pointer, sizeof pointer, "/%s", keys[i].key);
+      return error_set(error, STATUS_INVALID, pointer,
+                       "the sampling \"%s\" has no use for \"%s\": leave it out, or choose another "
+                       "sampling",
+                       sampling, keys[i].key);
+    }
   }
-  if (json_object_get(document, other)) {
-    snprintf(pointer, sizeof pointer, "/%s", other);
-    return error_set(
-        error, STATUS_INVALID, pointer,
-        "the sampling \"%s\" has no use for \"%s\"\nleave it out, or choose another sampling",
-        sampling, other);
+  return STATUS_OK;
+}
+
+enum status study_check_size(const json_t *document, struct error *error) {
+  enum status status = check_keys(document, error);
+  if (status != STATUS_OK) {
+    return status;
   }
   size_t count = study_count(document), most = members_max(document);
   if (count > most) {
-    snprintf(pointer, sizeof pointer, "/%s", wanted);
-    return error_set(error, STATUS_TOO_LARGE, pointer,
-                     "the study has too many members\nat most %zu for the kind \"%s\"", most,
-                     study_base_kind(document));
+    return error_set(error, STATUS_TOO_LARGE,
+                     study_is_list(document)     ? "/designs"
+                     : study_is_spread(document) ? "/size"
+                                                 : "/parameters",
+                     "the study has more than %zu members, the most that is allowed for the kind "
+                     "\"%s\"",
+                     most, study_base_kind(document));
   }
   return check_text(document, count, error);
 }

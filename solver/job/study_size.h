@@ -8,6 +8,9 @@
 bool study_is_list(const json_t *document);
 bool study_is_grid(const json_t *document);
 
+/* Whether it spreads its members over ranges: "latin-hypercube", "sobol" or "halton". */
+bool study_is_spread(const json_t *document);
+
 /* The kind of its members, borrowed from the document. */
 const char *study_base_kind(const json_t *document);
 

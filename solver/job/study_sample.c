@@ -1,0 +1,246 @@
+#include "solver/job/study_sample.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "solver/explore/latin.h"
+#include "solver/explore/sequence.h"
+#include "solver/job/study_constraint.h"
+#include "solver/job/study_size.h"
+
+/* Points that are tried for each member before constraints are called too tight. */
+enum { TRIES_PER_MEMBER = 200 };
+
+/* What a parameter may be. */
+struct range {
+  const json_t *values; /* the choices, or NULL: from .. to */
+  double from, to;
+  bool whole, logarithmic;
+  const char *unit; /* with its space, "" for numbers; into the document */
+};
+
+/* The points of a study in the making. */
+struct spread {
+  const struct reader *reader;
+  json_t *document;
+  size_t parameters, members;
+  struct range range[SEQUENCE_DIMENSIONS_MAX];
+  struct study_constraints constraints;
+};
+
+static const char *sampling_of(const json_t *document) {
+  return json_string_value(json_object_get(document, "sampling"));
+}
+
+/* ---- ranges ------------------------------------------------------------------------------- */
+
+static enum status refuse(const struct spread *s, size_t parameter, const char *key,
+                          const char *sentence) {
+  struct json_pointer at = {.text = ""};
+  json_pointer_key(&at, "parameters");
+  json_pointer_index(&at, parameter);
+  if (key) {
+    json_pointer_key(&at, key);
+  }
+  return error_set(s->reader->error, STATUS_INVALID, at.text, "%s", sentence);
+}
+
+/* The number of "1.5 mm" and, in *unit, what follows it. */
+static bool split(const json_t *value, double *number, const char **unit) {
+  char *end;
+  *unit = "";
+  if (json_is_number(value)) {
+    *number = json_number_value(value);
+    return true;
+  }
+  const char *text = json_string_value(value);
+  *number = text ? strtod(text, &end) : NAN;
+  *unit = text ? end : "";
+  return text && end != text && isfinite(*number);
+}
+
+static enum status read_range(struct spread *s, size_t index, const json_t *parameter) {
+  struct range *range = &s->range[index];
+  const json_t *from = json_object_get(parameter, "from"), *to = json_object_get(parameter, "to");
+  const char *scale = json_string_value(json_object_get(parameter, "scale")), *other;
+  *range = (struct range){.values = json_object_get(parameter, "values")};
+  if ((range->values != NULL) == (from != NULL) || (from != NULL) != (to != NULL) ||
+      (scale && !from)) {
+    return refuse(s, index, NULL,
+                  "a parameter has either values to choose from or a range; for example "
+                  "{\"pointer\": \"/actuator/chamber_gap\", \"from\": \"1 mm\", \"to\": \"3 mm\"}");
+  }
+  if (range->values) {
+    return STATUS_OK;
+  }
+  range->whole = json_is_integer(from) && json_is_integer(to);
+  range->logarithmic = scale && strcmp(scale, "log") == 0;
+  if (!split(from, &range->from, &range->unit)) {
+    return refuse(s, index, "from", "this is no number with a unit; for example \"1 mm\"");
+  }
+  if (!split(to, &range->to, &other) || json_is_string(from) != json_is_string(to) ||
+      strcmp(range->unit, other) != 0) {
+    return refuse(s, index, "to",
+                  "from and to are written alike, with the same unit; for example \"1 mm\" and "
+                  "\"3 mm\"");
+  }
+  if (!(range->from < range->to)) {
+    return refuse(s, index, "to", "this has to be more than \"from\"");
+  }
+  if (range->logarithmic && range->from <= 0.0) {
+    return refuse(s, index, "from", "a logarithmic range begins above 0");
+  }
+  return STATUS_OK;
+}
+
+/* The value at u of [0, 1), a new reference. Seven digits: what is measured has fewer. */
+static json_t *value_at(const struct range *range, double u) {
+  char text[96];
+  if (range->values) {
+    size_t count = json_array_size(range->values), which = (size_t)(u * (double)count);
+    return json_incref(json_array_get(range->values, which < count ? which : count - 1));
+  }
+  double width = range->to - range->from + (range->whole ? 1.0 : 0.0);
+  double value =
+      range->logarithmic ? range->from * pow(range->to / range->from, u) : range->from + u * width;
+  if (range->whole) {
+    return json_integer((json_int_t)fmin(floor(value), range->to));
+  }
+  snprintf(text, sizeof text, "%.7g%s", value, range->unit);
+  return range->unit[0] ? json_string(text) : json_real(strtod(text, NULL));
+}
+
+/* ---- points ------------------------------------------------------------------------------- */
+
+/* Adds one member to the lists of values. */
+static enum status add_point(struct spread *s, const double *u, json_t *const *lists) {
+  for (size_t k = 0; k < s->parameters; k++) {
+    if (json_array_append_new(lists[k], value_at(&s->range[k], u[k])) != 0) {
+      return error_set(s->reader->error, STATUS_NO_MEMORY, NULL, "no memory for the members");
+    }
+  }
+  return STATUS_OK;
+}
+
+static void drop_point(const struct spread *s, json_t *const *lists) {
+  for (size_t k = 0; k < s->parameters; k++) {
+    json_array_remove(lists[k], json_array_size(lists[k]) - 1);
+  }
+}
+
+static enum status draw_sequence(struct spread *s, uint64_t seed, json_t *const *lists) {
+  double u[SEQUENCE_DIMENSIONS_MAX];
+  struct sequence *sequence = NULL;
+  bool sobol = strcmp(sampling_of(s->document), "sobol") == 0;
+  enum status status = sequence_create(sobol ? SEQUENCE_SOBOL : SEQUENCE_HALTON, (int)s->parameters,
+                                       true, seed, &sequence, s->reader->error);
+  size_t taken = 0;
+  for (size_t tried = 0; status == STATUS_OK && taken < s->members; tried++) {
+    bool met = true;
+    sequence_next(sequence, u);
+    status = add_point(s, u, lists);
+    if (status == STATUS_OK) {
+      status = study_constraints_check(&s->constraints, s->reader, lists, &met);
+    }
+    if (status == STATUS_OK && met) {
+      taken++;
+    } else if (status == STATUS_OK) {
+      drop_point(s, lists);
+    }
+    if (status == STATUS_OK && tried + 1 == TRIES_PER_MEMBER * s->members && taken < s->members) {
+      status = error_set(s->reader->error, STATUS_INVALID, "/constraints",
+                         "of %zu points only %zu meet the constraints, and %zu members are wanted: "
+                         "widen the constraints or narrow the ranges",
+                         tried + 1, taken, s->members);
+    }
+  }
+  sequence_destroy(sequence);
+  return status;
+}
+
+static enum status draw_hypercube(struct spread *s, uint64_t seed, json_t *const *lists) {
+  double *x = malloc(s->members * s->parameters * sizeof *x);
+  enum status status =
+      x ? latin_hypercube((int)s->members, (int)s->parameters, seed, x, s->reader->error)
+        : error_set(s->reader->error, STATUS_NO_MEMORY, NULL, "no memory for the members");
+  for (size_t i = 0; status == STATUS_OK && i < s->members; i++) {
+    status = add_point(s, x + i * s->parameters, lists);
+  }
+  free(x);
+  return status;
+}
+
+/* Puts the lists into the document in place of choices. */
+static enum status give_values(struct spread *s, json_t *const *lists) {
+  json_t *parameters = json_object_get(s->document, "parameters");
+  for (size_t k = 0; k < s->parameters; k++) {
+    if (json_object_set(json_array_get(parameters, k), "values", lists[k]) != 0) {
+      return error_set(s->reader->error, STATUS_NO_MEMORY, NULL, "no memory for the members");
+    }
+  }
+  return STATUS_OK;
+}
+
+static enum status draw(struct spread *s) {
+  json_t *lists[SEQUENCE_DIMENSIONS_MAX] = {NULL};
+  uint64_t seed = (uint64_t)json_integer_value(json_object_get(s->document, "seed"));
+  enum status status = STATUS_OK;
+  for (size_t k = 0; k < s->parameters; k++) {
+    lists[k] = json_array();
+    if (!lists[k]) {
+      status = error_set(s->reader->error, STATUS_NO_MEMORY, NULL, "no memory for the members");
+    }
+  }
+  if (status == STATUS_OK) {
+    status = strcmp(sampling_of(s->document), "latin-hypercube") == 0
+                 ? draw_hypercube(s, seed, lists)
+                 : draw_sequence(s, seed, lists);
+  }
+  if (status == STATUS_OK) {
+    status = give_values(s, lists);
+  }
+  for (size_t k = 0; k < s->parameters; k++) {
+    json_decref(lists[k]);
+  }
+  return status;
+}
+
+/* Without ranges: every parameter has its values. */
+static enum status check_values(struct spread *s) {
+  const char *sampling = sampling_of(s->document);
+  size_t k;
+  json_t *parameter;
+  json_array_foreach(json_object_get(s->document, "parameters"), k, parameter) {
+    char sentence[240];
+    snprintf(sentence, sizeof sentence,
+             "the sampling \"%s\" takes \"values\", and neither \"from\", \"to\" nor \"scale\"; "
+             "for example {\"pointer\": \"/actuator/chamber_gap\", \"values\": [\"1 mm\", "
+             "\"2 mm\"]}",
+             sampling);
+    if (!json_object_get(parameter, "values") || json_object_get(parameter, "from") ||
+        json_object_get(parameter, "to") || json_object_get(parameter, "scale")) {
+      return refuse(s, k, NULL, sentence);
+    }
+  }
+  return STATUS_OK;
+}
+
+enum status study_sample(const struct reader *reader, json_t *document) {
+  enum status status = study_check_size(document, reader->error);
+  const json_t *parameters = json_object_get(document, "parameters");
+  struct spread s = {
+      .reader = reader, .document = document, .parameters = json_array_size(parameters)};
+  if (status != STATUS_OK || !study_is_spread(document)) {
+    return status == STATUS_OK ? check_values(&s) : status;
+  }
+  s.members = study_count(document);
+  for (size_t k = 0; k < s.parameters && status == STATUS_OK; k++) {
+    status = read_range(&s, k, json_array_get(parameters, k));
+  }
+  if (status == STATUS_OK) {
+    status = study_constraints_read(reader, document, &s.constraints);
+  }
+  return status == STATUS_OK ? draw(&s) : status;
+}
