@@ -8,7 +8,7 @@
 
 /* Products of factors that the exchanges may cost, how many rounds of lower and lower thresholds
  * they take, and the first threshold as a part of the discrepancy. */
-enum { EFFORT = 100000000, ROUNDS = 10 };
+enum { EFFORT = 30000000, ROUNDS = 10 };
 #define FIRST_THRESHOLD 1e-2
 
 /* ---- the discrepancy ---------------------------------------------------------------------- */
@@ -128,7 +128,7 @@ enum status latin_hypercube(int count, int dimension, uint64_t seed, double *x,
       x[i * dimension + k] = (order[i] + 0.5) / count;
     }
   }
-  if (count > 2 && dimension > 1) {
+  if (count > 2 && dimension > 1 && (double)count * count * dimension < EFFORT) {
     exchange(x, best, count, dimension, &random);
   }
   free(order);
