@@ -1,9 +1,13 @@
 #!/bin/sh
 # Writes the C table of the pages to standard output: embed.sh SOURCE_DIR FILE...
-# Each FILE is relative to SOURCE_DIR. Pages get the path /FILE, everything else /static/FILE.
+# Each FILE is relative to SOURCE_DIR, or to static/ here when it is made. Pages get the path /FILE, everything else /static/FILE.
 set -eu
 source_dir=$1
 shift
+
+place() {
+  if [ -f "$source_dir/$1" ]; then echo "$source_dir/$1"; else echo "static/$1"; fi
+}
 
 content_type() {
   case $1 in
@@ -27,7 +31,7 @@ echo '#include "server/http/static_files.h"'
 number=0
 for file in "$@"; do
   echo "static const unsigned char data_${number}[] = {"
-  od -An -v -tx1 "$source_dir/$file" | sed 's/ *\([0-9a-f][0-9a-f]\)/0x\1,/g'
+  od -An -v -tx1 "$(place "$file")" | sed 's/ *\([0-9a-f][0-9a-f]\)/0x\1,/g'
   echo '};'
   number=$((number + 1))
 done
@@ -35,7 +39,7 @@ echo 'const struct static_file static_files[] = {'
 number=0
 for file in "$@"; do
   type=$(content_type "$file")
-  etag=$(cksum < "$source_dir/$file" | awk '{ printf "%08x-%x", $1, $2 }')
+  etag=$(cksum < "$(place "$file")" | awk '{ printf "%08x-%x", $1, $2 }')
   printf '    {"%s", "%s", data_%d, sizeof data_%d, "\\"%s\\""},\n' \
     "$(url_path "$file")" "$type" "$number" "$number" "$etag"
   number=$((number + 1))
