@@ -24,6 +24,31 @@ for tool in curl jq sqlite3; do
   command -v $tool > /dev/null || { echo "SKIP: $tool is not installed"; exit 77; }
 done
 
+# What the tests of this folder send to URL passes a proxy that keeps it, when API_RECORD names a
+# folder for that: tests/contract compares it with the description of the API. PORT is the daemon's.
+RECORDER_PID=
+start_recorder() {
+  local here
+  here=$(dirname "$0")
+  if [ -n "$RECORDER_PID" ] || [ -z "${API_RECORD:-}" ] || [ ! -f "$here/lib.sh" ] ||
+    ! command -v node > /dev/null; then
+    return
+  fi
+  mkdir -p "$API_RECORD"
+  # Not a child, for which a plain `wait` would wait.
+  RECORDER_PID=$(
+    node "$here/../contract/record.mjs" "$WORK/port" "$API_RECORD/$(basename "$0" .sh).record" \
+      > "$WORK/recorder" 2> /dev/null &
+    echo $!
+  )
+  for _ in $(seq 200); do
+    [ -s "$WORK/recorder" ] && return
+    sleep 0.02
+  done
+  echo "the recorder did not start"
+  exit 1
+}
+
 # start_daemon OPTION...: sets DAEMON_PID, PORT and URL. Stand-ins of the solver may write to WORK
 # unless CONFINED is set.
 start_daemon() {
@@ -35,6 +60,11 @@ start_daemon() {
     if grep -q '^listening on https\?://' "$WORK/stdout"; then
       URL=$(sed -n 's/^listening on //p' "$WORK/stdout")
       PORT=${URL##*:}
+      echo "$PORT" > "$WORK/port"
+      [[ $URL == http://127.0.0.1:* ]] && start_recorder
+      if [[ -n $RECORDER_PID && $URL == http://127.0.0.1:* ]]; then
+        URL=http://127.0.0.1:$(cat "$WORK/recorder")
+      fi
       return 0
     fi
     kill -0 "$DAEMON_PID" 2> /dev/null || break
@@ -56,6 +86,9 @@ cleanup() {
   if [ -n "$DAEMON_PID" ]; then
     kill -KILL "$DAEMON_PID" 2> /dev/null
     wait "$DAEMON_PID" 2> /dev/null
+  fi
+  if [ -n "$RECORDER_PID" ]; then
+    kill "$RECORDER_PID"
   fi
   if [ "$FAILED" -ne 0 ]; then
     echo "the daemon's log:"; tail -200 "$WORK/stderr"
@@ -183,8 +216,8 @@ result() {
 {"status":"\$1","reason":"\$2","message":"\$3","kind":"response","name":"n",
  "metrics":{"bending_angle_deg":64.25,"mass_g":3.5},
  "samples":[{"pressure_kPa":0,"bending_angle_deg":0},{"pressure_kPa":50,"bending_angle_deg":64.25}],
- "midlines":[],"warnings":[],"artifacts":["surface.json","../../escape","missing.vtu"],
- "statistics":{},"provenance":{"version":"0.1.0","spec_hash":""}}
+ "midlines":[],"warnings":[],"artifacts":${artifacts:-[\"surface.json\"]},
+ "statistics":{},"provenance":{"version":"0.1.0","spec_hash":"$(printf '%064d' 0)"}}
 DOC
 }
 $1

@@ -62,6 +62,8 @@ study '.base | .model.mass = "65 g" | .model.modes.stretched.damping = "17 N s/m
 check "a member is the job that it is" "$(jq -c .metrics "$WORK/alone.out")" \
   "$(field '.members[37].metrics' | jq -c .)"
 check "with its hash" "$(jq -r .provenance.spec_hash "$WORK/alone.out")" "$(field '.members[37].spec_hash')"
+fetch GET "/api/v1/jobs/$id/plots/metric.png?metric=extension_ratio"
+check "a plot of a metric of choice" "200 image/png" "$CODE $(header Content-Type)"
 fetch GET "/api/v1/jobs/$id/plots/metric.png"
 check "its plot is there" 200 "$CODE"
 
