@@ -21,7 +21,12 @@ static const char usage[] =
     "  --read PATH       may be read and executed (repeatable; the system's programs always may)\n"
     "  --write DIR       may be written (repeatable); the first one is HOME and TMPDIR\n"
     "  --seccomp         no network, tracing, mounts...\n"
-    "  --memory BYTES, --cpu SECONDS, --file BYTES, --descriptors N, --processes N, --nice N\n"
+    "  --memory BYTES    private memory of each process; 0 for no limit, here and below\n"
+    "  --cpu SECONDS     processor time of each process\n"
+    "  --file BYTES      size of any file written\n"
+    "  --descriptors N   open files of each process\n"
+    "  --processes N     processes and threads in all\n"
+    "  --nice N          priority\n"
     "  --parent PID      end when this is not, or no longer, the parent\n"
     "  --report FD       where to say why the worker could not be started\n"
     "Exit status: that of the worker, or 127.\n";

@@ -115,12 +115,15 @@ sleep 0.3
 check "with the daemon everything ends" "0 0" "$(left 'detach 4 and wait') $(pgrep -fc "^$HOSTILE")"
 
 # A real job, with all of it.
-start_daemon --workers 2
+limit=2048
+# The shadow memory of a sanitizer does not fit under a limit of private memory.
+grep -aqE '__(asan|tsan)_init' "$BIN/pneulab-solve" && limit=0
+start_daemon --workers 2 --memory-limit $limit
 fetch POST /api/v1/jobs -H 'Prefer: wait=60' --data-binary @"$REPOSITORY/jobs/beast/20A-0.18.json"
 check "a real job runs" succeeded "$(field .state)"
 stop_daemon TERM
 if [ "$namespaces$processes$seccomp" = 111 ] && [ "$landlock" -gt 0 ]; then
-  start_daemon --isolation require
+  start_daemon --isolation require --memory-limit $limit
   stop_daemon TERM
 fi
 "$BIN/pneulabd" --data "$DATA" --listen 127.0.0.1:0 --launcher /nonexistent 2> "$WORK/second"
