@@ -2,14 +2,22 @@
 
 #include <arpa/inet.h>
 #include <microhttpd.h>
+#include <stdint.h>
 #include <string.h>
 #include <strings.h>
 
 #include "server/http/access.h"
 
+/* libmicrohttpd keeps the header as it came, in one piece, with NUL for each colon and line end. So
+ * where a value does not follow its name, or the next name is not two bytes after the value, the
+ * lines were not what they seem: ended by a bare LF, folded (which 0.9.75 mixes up), or cut by NUL.
+ * Others may have read them differently. */
+enum { HEADER_MAX = 65536 /* more than libmicrohttpd takes */ };
+
 struct header_scan {
+  const char *expected; /* where the next name has to be */
   unsigned hosts, lengths, codings, credentials;
-  bool bad_name, bad_value;
+  bool bad_name, bad_value, bad_line;
 };
 
 static bool name_is_token(const char *name) {
@@ -18,10 +26,29 @@ static bool name_is_token(const char *name) {
   return name[0] != '\0' && name[strspn(name, token)] == '\0';
 }
 
+/* Whether name and value are two parts of one line that begins where the line before it ended. */
+static bool line_is_whole(const char *expected, const char *name, size_t name_size,
+                          const char *value, size_t value_size) {
+  uintptr_t between = (uintptr_t)value - ((uintptr_t)name + name_size + 1);
+  if (name != expected || between > HEADER_MAX) {
+    return false;
+  }
+  for (const char *at = name + name_size + 1; at < value; at++) {
+    if (*at != ' ' && *at != '\t') {
+      return false;
+    }
+  }
+  char last = value[value_size + 1]; /* that of the line end */
+  return last == '\0' || last == '\n';
+}
+
 static enum MHD_Result header_scan_one(void *context, enum MHD_ValueKind kind, const char *name,
                                        size_t name_size, const char *value, size_t value_size) {
   struct header_scan *scan = context;
   (void)kind;
+  scan->bad_line = scan->bad_line || !value ||
+                   !line_is_whole(scan->expected, name, name_size, value, value_size);
+  scan->expected = value ? value + value_size + 2 : NULL;
   scan->hosts += strcasecmp(name, "Host") == 0;
   scan->lengths += strcasecmp(name, "Content-Length") == 0;
   scan->codings += strcasecmp(name, "Transfer-Encoding") == 0;
@@ -74,6 +101,10 @@ bool guard_host_is_loopback(const char *authority) {
 }
 
 static bool guard_framing(const struct header_scan *scan, const char *coding, struct reply *reply) {
+  if (scan->bad_line) {
+    return refuse(reply, 400, "malformed_header",
+                  "A line of the header is folded, has a NUL byte, or does not end with CR LF.");
+  }
   if (scan->bad_name || scan->bad_value) {
     return refuse(reply, 400, "malformed_header",
                   "A header name is not a token (a space before the colon?), or a value has a "
@@ -163,7 +194,7 @@ static bool guard_origin(const struct request *request, const char *host, struct
 }
 
 bool guard_check(const struct request *request, const char *version, struct reply *reply) {
-  struct header_scan scan = {0};
+  struct header_scan scan = {.expected = version + strlen(version) + 2};
   MHD_get_connection_values_n(request->connection, MHD_HEADER_KIND, header_scan_one, &scan);
   const char *host = request_header(request, "Host");
   return guard_framing(&scan, request_header(request, "Transfer-Encoding"), reply) &&

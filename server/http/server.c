@@ -50,7 +50,7 @@ struct exchange {
   size_t body_room, received;
   uintptr_t target_at; /* where libmicrohttpd keeps the target that request.target copies */
   enum { EXCHANGE_NEW, EXCHANGE_BODY, EXCHANGE_WAITING } phase;
-  bool parsed;
+  bool last; /* the connection ends with it */
 };
 
 void server_job_changed(struct service *service, int64_t job_id) {
@@ -102,6 +102,7 @@ static enum MHD_Result reply_send(struct exchange *exchange, struct reply *reply
     reply_clear(reply);
     return MHD_NO;
   }
+  reply->close = reply->close || exchange->last;
   headers_add(response, reply);
   MHD_add_response_header(response, "X-Request-Id", exchange->record.id);
   enum MHD_Result result =
@@ -148,6 +149,9 @@ static void exchange_open(struct exchange *exchange, const char *method, const c
       !access_identify(request, exchange->connections, exchange_connection(exchange), reply)) {
     return;
   }
+  /* libmicrohttpd is lenient with the ends of chunks: what follows them is not read as a request.
+   */
+  exchange->last = request_header(request, "Transfer-Encoding") != NULL;
   exchange->handle = route_find(request, reply);
   if (exchange->handle && !access_allows(request, reply)) {
     exchange->handle = NULL;

@@ -43,6 +43,57 @@ check "nothing smuggled is answered" 1 "$(grep -c '^HTTP/1.1' <<< "$answer")"
 answer=$(printf "GET /healthz HTTP/1.1\r\n$H\r\nGET /readyz HTTP/1.1\r\n$H\r\n" | "$RAW" "$PORT")
 check "pipelined requests are answered in turn" "ok ready" "$(sed -n 's/.*"status": "\(.*\)".*/\1/p' <<< "$answer" | paste -sd' ')"
 
+# Lines that others may read differently: each of these hid a header from libmicrohttpd, or gave it one.
+P="POST /api/v1/jobs:validate HTTP/1.1\r\n$H"
+raw "a bare LF" 400 closed "GET /healthz HTTP/1.1\r\nX: y\n$H\r\n"
+raw "a bare LF after the request line" 400 closed "GET /healthz HTTP/1.1\n$H\r\n"
+raw "a length after a bare LF" 400 closed "GET /healthz HTTP/1.1\r\n${H}X: y\nContent-Length: 30\r\n\r\n"
+raw "a bare CR" 400 closed "GET /healthz HTTP/1.1\r\n${H}X: a\rContent-Length: 5\r\n\r\n"
+raw "NUL in a value" 400 closed "GET /healthz HTTP/1.1\r\n${H}X: a\0b\r\n\r\n"
+raw "NUL in a value, not the last" 400 closed "GET /healthz HTTP/1.1\r\nX: a\0b\r\n$H\r\n"
+raw "NUL in a name" 400 closed "GET /healthz HTTP/1.1\r\n${H}X\0Y: b\r\n\r\n"
+raw "a folded coding" 400 closed "${P}Transfer-Encoding:\r\n chunked\r\nContent-Length: 3\r\n\r\n0\r\n\r\n"
+raw "a folded length" 400 closed "${P}Content-Length:\r\n\t2\r\n\r\n{}"
+raw "a first line that is folded" 400 closed "GET /healthz HTTP/1.1\r\n X: y\r\n$H\r\n"
+raw "a line without a colon" 400 closed "GET /healthz HTTP/1.1\r\n${H}nonsense\r\n\r\n"
+raw "coding identity and a length" 400 closed "${P}Transfer-Encoding: identity\r\nContent-Length: 2\r\n\r\n{}"
+for coding in identity 'chunked, chunked' xchunked '"chunked"' 'chunked;q=1' 'chunked\t' ''; do
+  raw "coding '$coding'" 501 closed "${P}Transfer-Encoding: $coding\r\n\r\n0\r\n\r\n"
+done
+raw "coding after VT" 400 closed "${P}Transfer-Encoding: \x0bchunked\r\n\r\n0\r\n\r\n"
+for length in 18446744073709551618 9223372036854775807 99999999999999999999999; do
+  raw "length $length" 413 closed "${P}Content-Length: $length\r\n\r\n{}"
+done
+for length in 0x2 '' '2 2' 2.0 2e0 '2;' -0 ' -2'; do
+  raw "length '$length'" 400 closed "${P}Content-Length: $length\r\n\r\n{}"
+done
+C="${P}Transfer-Encoding: chunked\r\n\r\n"
+for size in +2 -2 0x2 ' 2' '2 ' '' 2.0; do
+  raw "chunk of '$size'" 400 closed "${C}$size\r\n{}\r\n0\r\n\r\n"
+done
+raw "a chunk that is longer than its size" 400 closed "${C}2\r\n{}XX0\r\n\r\n"
+for end in ';x=y\r\n' ';x\n' ';x\ry\r\n' ';\0\r\n' '\n'; do
+  raw "a connection ends with its chunks ($end)" 422 closed \
+    "${C}2$end{}\r\n0\r\n\r\nGET /metrics HTTP/1.1\r\n$H\r\n"
+done
+raw "trailers are not headers" 422 closed "${C}2\r\n{}\r\n0\r\nContent-Length: 7\r\nHost: evil\r\n\r\n"
+raw "an extension without end" 500 closed "${C}2;$(printf 'a%.0s' {1..50000})\r\n{}\r\n0\r\n\r\n"
+raw "a long target" 414 closed "GET /$(printf 'a%.0s' {1..40000}) HTTP/1.1\r\n$H\r\n"
+raw "a long header" 431 closed "GET /healthz HTTP/1.1\r\n${H}X: $(printf 'a%.0s' {1..40000})\r\n\r\n"
+raw "many headers" 431 closed "GET /healthz HTTP/1.1\r\n$H$(printf 'X%d: y\\r\\n' {1..2000})\r\n"
+for host in localhost@evil evil@localhost 'localhost, evil' localhost/x 'localhost\t' 'local host'; do
+  raw "Host: $host" 421 closed "GET /healthz HTTP/1.1\r\nHost: $host\r\n\r\n"
+done
+raw "a user in the target" 421 closed "GET http://x@localhost/healthz HTTP/1.1\r\n$H\r\n"
+for target in https://localhost/healthz ftp://localhost/healthz localhost:80 http:///healthz '\x80'; do
+  raw "target $target" 400 closed "GET $target HTTP/1.1\r\n$H\r\n"
+done
+raw "no version" 400 closed "GET /healthz\r\n\r\n"
+raw "HTTP/2 from the start" 505 closed "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n"
+raw "TRACE" 405 closed "TRACE /healthz HTTP/1.1\r\n$H\r\n"
+answer=$(printf "GET /healthz HTTP/1.1\r\n$H$H\r\nGET /metrics HTTP/1.1\r\n$H\r\n" | "$RAW" "$PORT")
+check "nothing is answered after a refusal" 1 "$(grep -c '^HTTP/1.1' <<< "$answer")"
+
 # Names that are not ours, pages that are not ours.
 for host in evil.example localhost.evil.example 10.0.0.1 '[::2]' 'localhost:80:80' 'localhost@evil' ''; do
   fetch GET /healthz -H "Host: $host"
