@@ -41,7 +41,7 @@ start_recorder() {
       > "$WORK/recorder" 2> /dev/null &
     echo $!
   )
-  for _ in $(seq 200); do
+  for _ in $(seq 1200); do
     [ -s "$WORK/recorder" ] && return
     sleep 0.02
   done
@@ -56,7 +56,7 @@ start_daemon() {
   : > "$WORK/stdout"
   "$BIN/pneulabd" --data "$DATA" --listen 127.0.0.1:0 "$@" > "$WORK/stdout" 2>> "$WORK/stderr" &
   DAEMON_PID=$!
-  for _ in $(seq 200); do
+  for _ in $(seq 1200); do
     if grep -q '^listening on https\?://' "$WORK/stdout"; then
       URL=$(sed -n 's/^listening on //p' "$WORK/stdout")
       PORT=${URL##*:}
@@ -158,9 +158,10 @@ submit() {
   curl -s -X POST --data-binary "$document" "$@" "$URL/api/v1/jobs" | jq -r .id
 }
 
-# wait_state ID PATTERN [SECONDS]: waits until the job's state matches and prints it.
+# wait_state ID PATTERN [SECONDS]: waits until the job's state matches and prints it. A minute is
+# for a busy machine.
 wait_state() {
-  local state='' end=$((SECONDS + ${3:-20}))
+  local state='' end=$((SECONDS + ${3:-60}))
   while [ "$SECONDS" -le "$end" ]; do
     state=$(curl -s "$URL/api/v1/jobs/$1" | jq -r .state)
     if printf '%s' "$state" | grep -Eqx -- "$2"; then
