@@ -133,6 +133,7 @@ static enum status parts_open(const struct options *options, struct parts *parts
                                      .isolation = &parts->isolation,
                                      .workers = options->workers,
                                      .memory_limit_bytes = options->memory_limit_bytes,
+                                     .files_limit_bytes = options->files_limit_bytes,
                                      .time_limit_s = options->time_limit_s,
                                      .timeout_margin_s = options->timeout_margin_s,
                                      .retry_delay_s = options->retry_delay_s,

@@ -30,6 +30,8 @@ static const struct option_row rows[] = {
         "pneulab-solve (default: beside pneulabd, else in PATH)"),
     ROW(MIB, 0, "memory-limit", "MIB", memory_limit_bytes, 0, 1e7, "2048",
         "of one worker, 0 for none"),
+    ROW(MIB, 0, "files-limit", "MIB", files_limit_bytes, 0, 1e7, "4096",
+        "of all files of one job, 0 for none"),
     ROW(WORD, 0, "isolation", "auto|require|off", isolation, 0, 0, "auto",
         "of workers: what the kernel offers, all or nothing"),
     ROW(LIST, 0, "worker-read", "PATH", worker_read, 0, 0, NULL,

@@ -22,6 +22,7 @@ struct options {
   unsigned workers;
   unsigned connections_per_address;
   unsigned subscribers; /* to the stream of events; their connections do not count as others do */
+  uint64_t files_limit_bytes;     /* of all files of an attempt; 0: none */
   uint64_t memory_limit_bytes;    /* of one worker; 0: none */
   double drain_timeout_s;         /* how long running jobs may go on after SIGTERM */
   double time_limit_s;            /* of a job that sets no timeout */

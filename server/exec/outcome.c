@@ -159,6 +159,9 @@ void outcome_judge(struct outcome *outcome, const struct process_end *end, enum 
   } else if (cause == STOP_TIMEOUT || end->signal == SIGXCPU) {
     outcome_set(outcome, ATTEMPT_TIMED_OUT, "timeout",
                 "The worker was ended: it overran the time limit of its job.");
+  } else if (cause == STOP_FILES) {
+    outcome_set(outcome, ATTEMPT_FAILED, "files_limit",
+                "The worker was ended: its files take more space than a job may have.");
   } else if (cause == STOP_SHUTDOWN) {
     outcome_set(outcome, ATTEMPT_REQUEUED, "daemon_stopped",
                 "The daemon shut down while the job ran; it will run again.");

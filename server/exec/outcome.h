@@ -13,6 +13,7 @@ enum stop_cause {
   STOP_NONE,
   STOP_CANCEL,
   STOP_TIMEOUT,
+  STOP_FILES, /* they exceed their limit together */
   STOP_SHUTDOWN,
   STOP_ABORT /* a shutdown that waits for nobody */
 };

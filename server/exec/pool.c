@@ -195,6 +195,7 @@ static void slot_run(struct slot *slot, const struct claim *claim) {
                              .solver = settings->solver,
                              .isolation = settings->isolation,
                              .memory_limit_bytes = settings->memory_limit_bytes,
+                             .files_limit_bytes = settings->files_limit_bytes,
                              .study_jobs = study_jobs(settings),
                              .time_limit_s = settings->time_limit_s,
                              .timeout_margin_s = settings->timeout_margin_s};

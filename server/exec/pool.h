@@ -22,6 +22,7 @@ struct pool_settings {
   const struct isolation *isolation; /* likewise */
   unsigned workers;
   uint64_t memory_limit_bytes;
+  uint64_t files_limit_bytes; /* of all files of an attempt; 0: none */
   double time_limit_s, timeout_margin_s, retry_delay_s;
   /* Called after every change of a job's state, from any of the pool's threads. */
   void (*changed)(void *context, int64_t job_id);

@@ -56,7 +56,7 @@ static bool progress_differs(const struct progress *a, const struct progress *b)
 
 bool progress_poll(struct progress_reader *reader, struct progress *progress) {
   char buffer[65536];
-  int fd = open(reader->path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  int fd = open(reader->path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   if (fd < 0) {
     return false;
   }

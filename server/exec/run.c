@@ -15,7 +15,9 @@ enum {
   POLL_FIRST_MS = 20,
   OUTPUT_BYTES_MAX = 256 << 20,
   DESCRIPTORS_MAX = 512,
-  PROCESSES_MAX = 64
+  PROCESSES_MAX = 64,
+  MEASURE_MS = 1000,
+  MEASURE_SHARE = 50 /* times as long as a look takes is waited at least */
 };
 
 /* The paths of one attempt; room for the longest name after the data directory. */
@@ -28,7 +30,8 @@ struct run_paths {
 /* State of the watch over a running worker. */
 struct watch {
   int64_t timeout_at_ms;
-  int64_t kill_at_ms; /* 0: not asked to stop */
+  int64_t measure_at_ms; /* when to look at the files' size next */
+  int64_t kill_at_ms;    /* 0: not asked to stop */
   enum stop_cause cause;
 };
 
@@ -79,16 +82,35 @@ static enum status run_start(const struct run_settings *settings, const struct r
                        settings->isolation, process, error);
 }
 
+/* Whether the files of the attempt take more than they may. Looks about once a second, less often
+ * when there are so many that looking takes long. */
+static bool files_full(const struct run_settings *settings, const struct run_paths *paths,
+                       struct watch *watch) {
+  int64_t before = clock_monotonic_ms();
+  if (settings->files_limit_bytes == 0 || before < watch->measure_at_ms) {
+    return false;
+  }
+  int64_t bytes = file_tree_bytes(paths->directory);
+  int64_t now = clock_monotonic_ms();
+  watch->measure_at_ms = now + MEASURE_MS + MEASURE_SHARE * (now - before);
+  return bytes > 0 && (uint64_t)bytes > settings->files_limit_bytes;
+}
+
 /* Asks the worker to end when somebody wants that, and insists after a while. */
-static void watch_step(struct watch *watch, const struct run_hooks *hooks,
+static void watch_step(struct watch *watch, const struct run_hooks *hooks, bool files_full,
                        struct process *process) {
   int64_t now = clock_monotonic_ms();
   enum stop_cause wanted = hooks->stop_wanted(hooks->context);
   if (wanted == STOP_NONE && now >= watch->timeout_at_ms) {
     wanted = STOP_TIMEOUT;
   }
-  if (wanted == STOP_ABORT) {
-    watch->cause = watch->cause == STOP_NONE ? STOP_SHUTDOWN : watch->cause;
+  if (wanted == STOP_NONE && files_full) {
+    wanted = STOP_FILES;
+  }
+  if (wanted == STOP_ABORT || wanted == STOP_FILES) {
+    watch->cause = wanted == STOP_FILES        ? wanted
+                   : watch->cause == STOP_NONE ? STOP_SHUTDOWN
+                                               : watch->cause;
     process_kill(process);
   } else if (watch->cause == STOP_NONE && wanted != STOP_NONE) {
     watch->cause = wanted;
@@ -99,9 +121,9 @@ static void watch_step(struct watch *watch, const struct run_hooks *hooks,
   }
 }
 
-static enum stop_cause run_watch(const struct run_hooks *hooks, const struct run_paths *paths,
-                                 double time_limit_s, struct process *process,
-                                 struct process_end *end) {
+static enum stop_cause run_watch(const struct run_settings *settings, const struct run_hooks *hooks,
+                                 const struct run_paths *paths, double time_limit_s,
+                                 struct process *process, struct process_end *end) {
   struct progress_reader reader = {.offset = 0};
   memcpy(reader.path, paths->events, sizeof reader.path);
   struct progress progress = progress_none();
@@ -118,7 +140,7 @@ static enum stop_cause run_watch(const struct run_hooks *hooks, const struct run
     if (progress_poll(&reader, &progress)) {
       hooks->progressed(hooks->context, &progress);
     }
-    watch_step(&watch, hooks, process);
+    watch_step(&watch, hooks, files_full(settings, paths, &watch), process);
   }
   return watch.cause;
 }
@@ -166,7 +188,7 @@ void run_attempt(const struct run_settings *settings, const struct claim *claim,
     outcome_not_started(outcome, &error);
     return;
   }
-  enum stop_cause cause = run_watch(hooks, &paths, time_limit_s, &process, &end);
+  enum stop_cause cause = run_watch(settings, hooks, &paths, time_limit_s, &process, &end);
   const char *output = paths.output;
   if (end.exit_code >= 0 && rename(paths.output, paths.result) == 0) {
     output = paths.result;

@@ -119,6 +119,21 @@ static void hoard(json_t *metrics, int sharing) {
   json_object_set_new(metrics, "memory_MB", json_integer(pieces));
 }
 
+/* Files of 4 MB until somebody stops it; after 15 s nobody has. */
+static void many_files(void) {
+  static char content[4 * MEGABYTE];
+  for (int i = 0; i < 150; i++) {
+    char path[4096];
+    snprintf(path, sizeof path, "%s/file-%d", folder, i);
+    int fd = creat(path, 0600);
+    if (fd < 0 || write(fd, content, sizeof content) < 0) {
+      break;
+    }
+    close(fd);
+    usleep(100000);
+  }
+}
+
 /* A grandchild in a session of its own that has let go of everything and ignores what it can. */
 static void detach(const char *tag) {
   if (fork() == 0) {
@@ -157,6 +172,8 @@ static void misbehave(const char *name, json_t *metrics) {
     snprintf(path, sizeof path, "%s/big", folder);
     int fd = creat(path, 0600);
     note(metrics, "big_file", pwrite(fd, "x", 1, (off_t)1 << 40));
+  } else if (strcmp(name, "many files") == 0) {
+    many_files();
   } else if (strncmp(name, "detach", 6) == 0) {
     detach(name);
     if (strstr(name, "and wait")) {

@@ -28,7 +28,7 @@ left() {
   grep -lzs "^DETACHED=$1\$" /proc/[0-9]*/environ | wc -l
 }
 
-start_daemon --workers 2 --retry-delay 0 --memory-limit 256 --solver "$HOSTILE"
+start_daemon --workers 2 --retry-delay 0 --memory-limit 256 --files-limit 16 --solver "$HOSTILE"
 cp "$WORK/stderr" "$WORK/first"
 check_match "the log says what holds" "isolation of workers: " "$(cat "$WORK/stderr")"
 
@@ -76,6 +76,8 @@ misbehave "hoard shared"
 check "shared memory ends too" true "$([ "$(fact memory_MB)" -lt 1800 ] && echo true)"
 misbehave "big file"
 check "a file ends at its limit" 27 "$(fact big_file)"
+misbehave "many files"
+check "and all files together" "failed files_limit" "$(field '.state + " " + .reason_code')"
 if [ "$processes" -gt 0 ]; then
   misbehave bomb
   check "a fork bomb ends" true "$([ "$(fact processes)" -lt 400 ] && echo true)"
