@@ -6,6 +6,7 @@ import { find, setText } from './dom.js';
 import { JobList } from './list.js';
 import { poll } from './poll.js';
 import { showProblem } from './problem.js';
+import { showSession } from './session.js';
 import { setUpSubmit } from './submit.js';
 
 const address = new URLSearchParams(window.location.search);
@@ -91,5 +92,6 @@ find('compare-clear').addEventListener('click', () => {
   compare();
 });
 setUpSubmit(refresh);
+showSession();
 refresh();
 showComparison([...selected].sort((a, b) => a - b));

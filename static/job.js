@@ -7,6 +7,7 @@ import {
 } from './format.js';
 import { poll } from './poll.js';
 import { showProblem } from './problem.js';
+import { showSession } from './session.js';
 
 const CAPTIONS = {
   angle: 'Bending angle against pressure',
@@ -243,4 +244,5 @@ async function update() {
 }
 
 const refresh = poll(update);
+showSession();
 refresh();
