@@ -20,9 +20,10 @@ struct disk {
   struct store *store;
   const char *data;
   uint64_t reserve_bytes;
-  pthread_mutex_t mutex; /* guards everything below */
-  struct error space;    /* as the file system says, looked up every LOOK_MS */
-  struct error probe;    /* how the last try to write ended */
+  pthread_mutex_t trying; /* one try to write at a time */
+  pthread_mutex_t mutex;  /* guards everything below */
+  struct error space;     /* as the file system says, looked up every LOOK_MS */
+  struct error probe;     /* how the last try to write ended */
   int64_t looked_ms;
   bool trouble;
   unsigned troubles;
@@ -35,6 +36,7 @@ enum status disk_create(struct store *store, const char *data, uint64_t reserve_
     return error_set(error, STATUS_NO_MEMORY, NULL, "No memory to watch the disk.");
   }
   *made = (struct disk){.store = store, .data = data, .reserve_bytes = reserve_bytes};
+  pthread_mutex_init(&made->trying, NULL);
   pthread_mutex_init(&made->mutex, NULL);
   *disk = made;
   return STATUS_OK;
@@ -42,35 +44,46 @@ enum status disk_create(struct store *store, const char *data, uint64_t reserve_
 
 void disk_destroy(struct disk *disk) {
   if (disk) {
+    pthread_mutex_destroy(&disk->trying);
     pthread_mutex_destroy(&disk->mutex);
     free(disk);
   }
 }
 
-/* Asks the file system how much room there is. */
-static void disk_look(struct disk *disk) {
+/* Asks one file system how much room there is. */
+static void disk_look_at(struct disk *disk, const char *path) {
   struct statvfs info;
+  if (disk->reserve_bytes == 0 || statvfs(path, &info) != 0) {
+    return;
+  }
+  uint64_t free_bytes = (uint64_t)info.f_bavail * info.f_frsize;
+  if (free_bytes < disk->reserve_bytes) {
+    error_set(&disk->space, STATUS_NO_SPACE, NULL,
+              "Only %llu MiB are free on the disk of %.100s, and %llu MiB are kept for results "
+              "(--disk-reserve): no job is accepted or started until there is more.",
+              (unsigned long long)(free_bytes >> 20), path,
+              (unsigned long long)(disk->reserve_bytes >> 20));
+  } else if (info.f_files > 0 && info.f_favail < INODES_MIN) {
+    error_set(&disk->space, STATUS_NO_SPACE, NULL,
+              "The file system of %.100s has only %llu inodes left: no job is accepted or started "
+              "until there are more.",
+              path, (unsigned long long)info.f_favail);
+  }
+}
+
+/* Asks those of the database and of the files of jobs, which may be different ones. */
+static void disk_look(struct disk *disk) {
+  char attempts[PATH_MAX];
   int64_t now = clock_monotonic_ms();
   if (disk->looked_ms != 0 && now - disk->looked_ms < LOOK_MS) {
     return;
   }
   disk->looked_ms = now;
   disk->space.status = STATUS_OK;
-  if (disk->reserve_bytes == 0 || statvfs(disk->data, &info) != 0) {
-    return;
-  }
-  uint64_t free_bytes = (uint64_t)info.f_bavail * info.f_frsize;
-  if (free_bytes < disk->reserve_bytes) {
-    error_set(&disk->space, STATUS_NO_SPACE, NULL,
-              "Only %llu MiB are free on the disk of the data directory, and %llu MiB are kept for "
-              "results (--disk-reserve): no job is accepted or started until there is more.",
-              (unsigned long long)(free_bytes >> 20),
-              (unsigned long long)(disk->reserve_bytes >> 20));
-  } else if (info.f_files > 0 && info.f_favail < INODES_MIN) {
-    error_set(&disk->space, STATUS_NO_SPACE, NULL,
-              "The file system of the data directory has only %llu inodes left: no job is accepted "
-              "or started until there are more.",
-              (unsigned long long)info.f_favail);
+  disk_look_at(disk, disk->data);
+  int length = snprintf(attempts, sizeof attempts, "%s/attempts", disk->data);
+  if (disk->space.status == STATUS_OK && length > 0 && (size_t)length < sizeof attempts) {
+    disk_look_at(disk, attempts);
   }
 }
 
@@ -78,8 +91,12 @@ static void disk_look(struct disk *disk) {
 static enum status disk_state(struct disk *disk, struct error *error) {
   struct error found = {.status = STATUS_OK};
   disk_look(disk);
-  if (store_health(disk->store, &found) == STATUS_OK) {
-    found = disk->probe.status != STATUS_OK ? disk->probe : disk->space;
+  /* A try to write knows its reason best: SQLite cannot always tell a full disk from a broken one.
+   */
+  if (disk->probe.status != STATUS_OK) {
+    found = disk->probe;
+  } else if (store_health(disk->store, &found) == STATUS_OK) {
+    found = disk->space;
   }
   bool trouble = found.status != STATUS_OK;
   if (trouble && !disk->trouble) {
@@ -113,7 +130,7 @@ unsigned disk_troubles(struct disk *disk) {
 static enum status disk_try(const struct disk *disk, struct error *error) {
   static const char bytes[PROBE_BYTES];
   char path[PATH_MAX];
-  int length = snprintf(path, sizeof path, "%s/tmp/probe-%d", disk->data, (int)gettid());
+  int length = snprintf(path, sizeof path, "%s/attempts/.probe", disk->data);
   if (length < 0 || (size_t)length >= sizeof path) {
     return STATUS_OK;
   }
@@ -127,6 +144,7 @@ static enum status disk_try(const struct disk *disk, struct error *error) {
 
 static void disk_try_and_note(struct disk *disk) {
   struct error found = {.status = STATUS_OK};
+  pthread_mutex_lock(&disk->trying);
   enum status status = disk_try(disk, &found);
   pthread_mutex_lock(&disk->mutex);
   disk->probe = found;
@@ -134,6 +152,7 @@ static void disk_try_and_note(struct disk *disk) {
   disk->looked_ms = 0;
   disk_state(disk, NULL);
   pthread_mutex_unlock(&disk->mutex);
+  pthread_mutex_unlock(&disk->trying);
 }
 
 bool disk_blamed(struct disk *disk, unsigned before) {
