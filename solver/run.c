@@ -1,5 +1,7 @@
 #include "solver/run.h"
 
+#include <math.h>
+
 #include "solver/base/clock.h"
 #include "solver/bistable/dynamics.h"
 #include "solver/bistable/result.h"
@@ -26,17 +28,33 @@ struct run {
   struct path_record *from;               /* path to start from, or NULL */
   struct path_record *path;               /* path to be kept, or NULL */
   struct result_sensitivity *sensitivity; /* NULL unless the job asks for derivatives */
+  int step;                               /* recorded states above no load */
+  double pressure, fraction;              /* of the last report */
 };
+
+/* Part of the work that the path is when its error is estimated on a finer mesh. */
+static const double path_share = 0.5;
+
+/* Reports how far the job is; the fraction never falls, also where the pressure does. */
+static void tell(struct run *run, double fraction) {
+  FILE *events = run->options->events;
+  run->fraction = fmax(run->fraction, fmin(fraction, 1.0));
+  if (events) {
+    fprintf(events,
+            "{\"event\":\"progress\",\"fraction\":%.4f,\"pressure_kPa\":%.6g,\"step\":%d,"
+            "\"steps\":%d,\"iteration\":%d}\n",
+            run->fraction, 1e-3 * run->pressure, run->step, run->spec->load.steps,
+            run->solve.model->statistics.newton_iterations);
+    fflush(events);
+  }
+}
 
 static enum status take_point(void *context, const struct path_point *point) {
   struct run *run = context;
-  double to = run->spec->load.pressure_to;
-  if (run->options->events) {
-    fprintf(run->options->events,
-            "{\"event\":\"progress\",\"fraction\":%.4f,\"pressure_kPa\":%.6g}\n",
-            to != 0 ? point->pressure / to : 0, 1e-3 * point->pressure);
-    fflush(run->options->events);
-  }
+  double to = run->spec->load.pressure_to, share = run->spec->error_estimate ? path_share : 1;
+  run->step += point->recorded && point->pressure != 0;
+  run->pressure = point->pressure;
+  tell(run, to != 0 ? share * point->pressure / to : 0);
   enum status status = result_add(run->result, point);
   if (status == STATUS_OK && run->path && point->recorded) {
     status = path_record_add(run->path, point->pressure, point->state);
@@ -75,6 +93,7 @@ static void estimate(struct run *run) {
   model_retire(run->solve.model);
   enum status status =
       estimate_finer(run->spec, &run->solve, run->spec->load.pressure_to, &finer, &error);
+  tell(run, 1);
   result_compare(run->result, status == STATUS_OK ? &finer : NULL, &error, clock_cpu_s() - start);
 }
 
@@ -155,7 +174,7 @@ static enum status run_other(const struct job_spec *spec, const struct run_optio
     return curve_job(spec, document, error);
   }
   if (spec->kind == JOB_IDENTIFY) {
-    return identify_job(spec, options->cancelled, document, ending, error);
+    return identify_job(spec, options->events, options->cancelled, document, ending, error);
   }
   if (spec->kind == JOB_BISTABLE) {
     struct result_bistable_options bistable = {options->events, options->cancelled};

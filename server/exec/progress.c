@@ -74,7 +74,7 @@ bool progress_poll(struct progress_reader *reader, struct progress *progress) {
   bool line_too_long = start == buffer && (size_t)got == sizeof buffer;
   reader->offset += line_too_long ? got : start - buffer;
   int64_t now = clock_monotonic_ms();
-  if (reader->pace.count == 0) {
+  if (reader->pace.count == 0 || progress->fraction < before.fraction) { /* another stage */
     pace_start(&reader->pace, now);
   }
   if (before.fraction != progress->fraction) {

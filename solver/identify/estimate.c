@@ -166,6 +166,22 @@ static bool has_settled(const gsl_multilarge_nlinear_workspace *work, double bef
          (largest < 0.01 && before - after < 1e-4 * after / freedom);
 }
 
+/* Reports an iteration of a fit. Nobody knows how many are to come: every iteration gains a part of
+ * what the fit had left, every round of fits half of the whole. */
+static void tell(struct identification *id, int iteration) {
+  double fitted = (double)id->fitting + 1.0 - 1.0 / (1.0 + 0.3 * iteration);
+  double done = 1.0 - pow(0.5, id->round + fitted / (double)id->group_count);
+  id->iterations++;
+  id->reported = fmax(id->reported, done);
+  if (id->events) {
+    fprintf(id->events,
+            "{\"event\":\"progress\",\"fraction\":%.4f,\"step\":%zu,\"steps\":%zu,"
+            "\"iteration\":%d}\n",
+            id->reported, id->fitting + 1, id->group_count, id->iterations);
+    fflush(id->events);
+  }
+}
+
 static enum status run_solver(struct task *task, gsl_multilarge_nlinear_workspace *work,
                               gsl_vector *x) {
   gsl_multilarge_nlinear_fdf fdf = {.f = residuals,
@@ -179,6 +195,7 @@ static enum status run_solver(struct task *task, gsl_multilarge_nlinear_workspac
     double before = cost(work);
     flag = gsl_multilarge_nlinear_iterate(work);
     task->group->iterations++;
+    tell(task->id, i + 1);
     task->group->converged = flag == GSL_SUCCESS && has_settled(work, before);
   }
   /* No progress to the last digit is an end, too. */
@@ -302,7 +319,9 @@ static enum status fit_rounds(struct identification *id, struct error *error) {
   enum status status = STATUS_OK;
   double change = INFINITY;
   for (int round = 0; round < ROUNDS_MAX && change > 1.05 && status == STATUS_OK; round++) {
+    id->round = round;
     for (size_t g = 0; g < id->group_count && status == STATUS_OK; g++) {
+      id->fitting = g;
       status = estimate_fit(id, &id->group[g], error);
     }
     if (status == STATUS_OK) {

@@ -2,6 +2,8 @@
 #ifndef PNEULAB_IDENTIFY_IDENTIFICATION_H
 #define PNEULAB_IDENTIFY_IDENTIFICATION_H
 
+#include <stdio.h>
+
 #include "solver/identify/point.h"
 
 /* Change of chi-square from which a swing is in the data: swings of many frequencies are looked
@@ -57,6 +59,11 @@ struct identification {
   double *sigma;     /* 2 for each trial: h in m, pressure in Pa */
   double deadline_s; /* clock_wall_s at which to stop, 0: none */
   bool (*cancelled)(void *context);
+  FILE *events;    /* progress as JSON lines, or NULL */
+  int round;       /* of fits with the noise of the one before */
+  size_t fitting;  /* the group that is fitted */
+  int iterations;  /* of all fits */
+  double reported; /* fraction */
 };
 
 /* Parameters of a point as they stand. */

@@ -83,8 +83,9 @@ static bool add_results(const struct work *work, json_t *document) {
                   json_object_set_new(document, "model", document_model(id, &work->outcome)) == 0);
 }
 
-enum status identify_job(const struct job_spec *spec, bool (*cancelled)(void *context),
-                         json_t **document, enum status *ending, struct error *error) {
+enum status identify_job(const struct job_spec *spec, FILE *events,
+                         bool (*cancelled)(void *context), json_t **document, enum status *ending,
+                         struct error *error) {
   struct document_parts parts = {.wall_s = clock_wall_s(), .cpu_s = clock_cpu_s()};
   struct work work = {.spec = spec};
   struct error end = {.status = STATUS_OK};
@@ -97,6 +98,7 @@ enum status identify_job(const struct job_spec *spec, bool (*cancelled)(void *co
   }
   work.id.deadline_s = spec->timeout_s > 0.0 ? parts.wall_s + spec->timeout_s : 0.0;
   work.id.cancelled = cancelled;
+  work.id.events = events;
   *ending = estimate_points(&work.id, &end);
   if (*ending == STATUS_OK) {
     *ending = outcome_fill(&work.id, &work.outcome, &end);

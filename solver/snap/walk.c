@@ -84,9 +84,9 @@ static void tell_progress(const struct snap_walk *walk, const struct axi_state *
     double n = walk->path->count, done = n / (n + 100.0);
     fprintf(walk->study->progress,
             "{\"event\":\"progress\",\"fraction\":%.4f,\"stage\":\"%s\",\"pressure_kPa\":%.6g,"
-            "\"force_N\":%.6g}\n",
+            "\"force_N\":%.6g,\"step\":%ld}\n",
             walk->share[0] + done * (walk->share[1] - walk->share[0]), walk->path->name,
-            1e-3 * state->pressure, state->force);
+            1e-3 * state->pressure, state->force, walk->study->states);
     fflush(walk->study->progress);
   }
 }

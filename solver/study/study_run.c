@@ -40,7 +40,7 @@ void study_settle(struct study_run *run, size_t index) {
   run->figures.computed += !state->resumed;
   if (run->options->events) {
     fprintf(run->options->events,
-            "{\"event\":\"progress\",\"fraction\":%.4f,\"members_done\":%zu,\"members\":%zu,"
+            "{\"event\":\"progress\",\"fraction\":%.4f,\"step\":%zu,\"steps\":%zu,"
             "\"member\":%zu,\"spec_hash\":\"%s\",\"reason\":\"%s\"}\n",
             (double)run->settled / (double)run->study.distinct, run->settled, run->study.distinct,
             index, member->hash, state->reason);

@@ -29,7 +29,8 @@ void verify_row(struct verify_run *run, double size, double computed, double err
   if (run->events) {
     /* Every mesh costs several times the one before. */
     double left = pow(0.2, run->refinement - r->row_count);
-    fprintf(run->events, "{\"event\":\"progress\",\"fraction\":%.4f}\n", fmin(left, 1));
+    fprintf(run->events, "{\"event\":\"progress\",\"fraction\":%.4f,\"step\":%d}\n", fmin(left, 1),
+            r->row_count);
     fflush(run->events);
   }
 }

@@ -66,7 +66,7 @@ json_t *case_run(const char *table, const char *rest) {
   ck_assert(reader || job_reader_create(&reader, &error) == STATUS_OK);
   ck_assert_msg(job_reader_read(reader, text, strlen(text), &spec, &error) == STATUS_OK, "%s: %s",
                 error.pointer, error.message);
-  ck_assert_msg(identify_job(&spec, NULL, &document, &ending, &error) == STATUS_OK, "%s",
+  ck_assert_msg(identify_job(&spec, NULL, NULL, &document, &ending, &error) == STATUS_OK, "%s",
                 error.message);
   ck_assert_msg(ending == STATUS_OK, "%s", json_string_value(json_object_get(document, "message")));
   job_spec_release(&spec);
