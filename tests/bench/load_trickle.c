@@ -1,8 +1,9 @@
 /* Clients that send a request header one byte at a time:
- *   load_trickle HOST PORT COUNT SECONDS [FROM]
+ *   load_trickle HOST PORT COUNT SECONDS [FROM [one]]
  * Each sends a byte every half second, for SECONDS at most. With FROM (as in 127.1.0.0) each comes
- * from an address of its own, counted on from there. Prints one JSON object: how many were
- * accepted, how many were closed by the server, and when the last of these was closed. */
+ * from an address of its own, counted on from there, or all come from that one. Prints one JSON
+ * object: how many were accepted, how many were closed by the server, and when the last of these
+ * was closed. */
 #include <arpa/inet.h>
 #include <errno.h>
 #include <stdio.h>
@@ -48,7 +49,7 @@ static void client_step(struct client *client, const char *header, double since)
 
 int main(int argc, char **argv) {
   if (argc < 5) {
-    fprintf(stderr, "usage: load_trickle HOST PORT COUNT SECONDS [FROM]\n");
+    fprintf(stderr, "usage: load_trickle HOST PORT COUNT SECONDS [FROM [one]]\n");
     return 2;
   }
   static const char header[] =
@@ -64,7 +65,7 @@ int main(int argc, char **argv) {
   for (size_t i = 0; i < count; i++) {
     char from[INET_ADDRSTRLEN];
     if (argc > 5) {
-      address(from, sizeof from, argv[5], (unsigned)i);
+      address(from, sizeof from, argv[5], argc > 6 ? 0 : (unsigned)i);
     }
     clients[i].fd = load_connect(argv[1], atoi(argv[2]), argc > 5 ? from : NULL);
     accepted += clients[i].fd >= 0;
