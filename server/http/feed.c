@@ -14,6 +14,7 @@
 enum {
   RETRY_MS = 2000,       /* after which a client is to connect again */
   PUBLISH_GAP_MS = 50,   /* least time between two rounds: news in between go out together */
+  COUNT_A_MS = 5,        /* as many subscribers make that a millisecond longer */
   FAILED_GAP_MS = 1000,  /* the same after the database could not be read */
   KEEP_ALIVE_MS = 15000, /* silence after which a comment is sent */
   LOOK_MS = 1000,        /* how often silence is looked for */
@@ -197,7 +198,7 @@ static void *feed_main(void *context) {
     feed->news = feed->news || !complete;
     feed->closed = closing;
     feed_resume(feed, closing);
-    feed_pause(feed, complete ? PUBLISH_GAP_MS : FAILED_GAP_MS);
+    feed_pause(feed, complete ? PUBLISH_GAP_MS + feed->count / COUNT_A_MS : FAILED_GAP_MS);
   }
   pthread_mutex_unlock(&feed->mutex);
   return NULL;
