@@ -70,7 +70,7 @@ async function update() {
   }
 }
 
-const refresh = poll(update);
+const refresh = poll(update, '/api/v1/events', (report) => list.showProgress(report));
 
 function goTo(target) {
   cursor = target;

@@ -103,6 +103,36 @@ function showActions(state) {
   }
 }
 
+// Seconds as people say them.
+function timeLeft(seconds) {
+  if (typeof seconds !== 'number') {
+    return '';
+  }
+  if (seconds < 90) {
+    return `about ${Math.max(1, Math.round(seconds))}\u00a0s left`;
+  }
+  return seconds < 5400
+    ? `about ${Math.round(seconds / 60)}\u00a0min left`
+    : `about ${Math.round(seconds / 3600)}\u00a0h left`;
+}
+
+// What a running job has reported: the fraction, and the parts that its kind has.
+function showProgress(report) {
+  const share = Math.min(Math.max(Number(report.fraction) || 0, 0), 1);
+  const parts = [`${Math.round(100 * share)}\u00a0%`];
+  if (report.step) {
+    parts.push(report.steps ? `step ${report.step} of ${report.steps}` : `step ${report.step}`);
+  }
+  if (typeof report.pressure_kPa === 'number') {
+    parts.push(`${number(report.pressure_kPa)}\u00a0kPa`);
+  }
+  if (report.eta_s !== null && share < 1) {
+    parts.push(timeLeft(report.eta_s));
+  }
+  find('progress').value = share;
+  setText(find('percent'), parts.filter(Boolean).join(' · '));
+}
+
 function showState(job) {
   document.title = `${job.name || `Job ${job.id}`} · PneuLab`;
   setText(find('kind'), `Job ${job.id} · ${job.kind}`);
@@ -110,10 +140,12 @@ function showState(job) {
   find('state').className = `state ${job.state}`;
   setText(find('state'), stateWord(job.state));
   const isRunning = job.state === 'running' || job.state === 'starting';
-  const share = Math.min(Math.max(Number(job.progress) || 0, 0), 1);
   find('progress').hidden = !isRunning;
-  find('progress').value = share;
-  setText(find('percent'), isRunning ? `${Math.round(100 * share)}\u00a0%` : '');
+  if (isRunning) {
+    showProgress(job.progress_detail || { fraction: job.progress });
+  } else {
+    setText(find('percent'), '');
+  }
   const code = job.reason_code && job.reason_code !== 'ok' && job.reason_code !== job.state
     ? stateWord(job.reason_code) : '';
   const reason = [code, job.message].filter(Boolean).join(': ');
@@ -243,6 +275,6 @@ async function update() {
   }
 }
 
-const refresh = poll(update);
+const refresh = poll(update, `/api/v1/events?job=${encodeURIComponent(id)}`, showProgress);
 showSession();
 refresh();

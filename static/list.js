@@ -87,6 +87,14 @@ export class JobList {
     return jobs.some((job) => isActive(job.state));
   }
 
+  // A report of a running job, between two refreshes.
+  showProgress({ job, fraction }) {
+    const row = this.rows.get(job);
+    if (row) {
+      row.progress.value = fraction;
+    }
+  }
+
   // Says aloud what ended since the last refresh.
   announce(jobs) {
     const ended = jobs.filter((job) => !isActive(job.state) && this.states.has(job.id)
