@@ -364,6 +364,7 @@ enum status server_create(const struct options *options, struct service *service
   struct connection_times times = {.header_ms = (int64_t)(1000 * options->header_timeout_s),
                                    .body_ms = (int64_t)(1000 * options->body_timeout_s)};
   enum status status = connections_create(&times, service->access->tls, &made->connections, error);
+  service->connections = made->connections; /* before the first request can come */
   if (status == STATUS_OK) {
     struct listen_calls calls = {.context = made,
                                  .handle = server_handle,
@@ -375,7 +376,6 @@ enum status server_create(const struct options *options, struct service *service
   if (status == STATUS_OK && pthread_create(&made->ticker, NULL, server_tick, made) != 0) {
     status = error_set(error, STATUS_NO_MEMORY, NULL, "Cannot start a thread.");
   }
-  service->connections = made->connections;
   made->ticking = status == STATUS_OK;
   if (status != STATUS_OK) {
     server_destroy(made);
