@@ -90,14 +90,15 @@ END;
 
 -- ---- who is next --------------------------------------------------------------------------
 -- Of the jobs with the highest priority, those of the submitter with the fewest running jobs; of
--- equals, of the one who has used the workers least of late; of his jobs the oldest.
+-- equals, of the one who has used the workers least of late; of equals again the oldest job.
 
 -- Everybody with a job that waits or runs, and who has used workers of late.
 -- charge: the logarithm (base 2) of the seconds of worker time used, of which each counts half as
 -- much every ten minutes. It is kept as what it would be at time zero, so that it changes only
 -- where time is added: log2(sum of seconds * 2 ^ (end of the attempt in ms / 600000)). Who comes
--- with nothing to his account starts at a tenth of a second (log2 0.1 = -3.3219): thereby somebody
--- whose use has faded goes before those who come later, however many they are.
+-- with nothing to his account starts at a tenth of a second (log2 0.1 = -3.3219), used in the minute
+-- in which he comes: thereby somebody whose use has faded goes before those who come later, however
+-- many they are.
 CREATE TABLE submitter (
   name    TEXT PRIMARY KEY,
   ready   INTEGER NOT NULL DEFAULT 0,  -- jobs that may start
@@ -114,9 +115,10 @@ CREATE TABLE submitter_queue (
   ready     INTEGER NOT NULL,          -- jobs, at least one
   running   INTEGER NOT NULL,          -- as in submitter
   charge    REAL NOT NULL,             -- as in submitter
+  job_id    INTEGER NOT NULL,          -- the oldest of the jobs
   PRIMARY KEY (submitter, priority)
 ) WITHOUT ROWID;
-CREATE INDEX submitter_queue_order ON submitter_queue (priority DESC, running, charge);
+CREATE INDEX submitter_queue_order ON submitter_queue (priority DESC, running, charge, job_id);
 
 CREATE INDEX job_ready ON job (submitter, priority, id) WHERE ready = 1;
 CREATE INDEX job_retry ON job (not_before_ms) WHERE state = 'retry_wait' AND retry_due = 0;
@@ -125,34 +127,36 @@ CREATE INDEX attempt_open ON attempt (job_id) WHERE outcome = '';
 
 INSERT INTO submitter (name, ready, running, charge)
   SELECT submitter, sum(ready), sum(state IN ('starting', 'running', 'cancelling')),
-    min(created_ms) / 600000.0 - 3.3219
+    min(created_ms) / 60000 / 10.0 - 3.3219
   FROM job WHERE ready OR state IN ('starting', 'running', 'cancelling') GROUP BY submitter;
-INSERT INTO submitter_queue (submitter, priority, ready, running, charge)
-  SELECT submitter.name, job.priority, count(*), submitter.running, submitter.charge
+INSERT INTO submitter_queue (submitter, priority, ready, running, charge, job_id)
+  SELECT submitter.name, job.priority, count(*), submitter.running, submitter.charge, min(job.id)
   FROM job JOIN submitter ON submitter.name = job.submitter WHERE job.ready
   GROUP BY submitter.name, job.priority;
 
 CREATE TRIGGER job_enters_queue_insert AFTER INSERT ON job WHEN NEW.ready
 BEGIN
   INSERT INTO submitter (name, ready, charge)
-    VALUES (NEW.submitter, 1, NEW.created_ms / 600000.0 - 3.3219)
+    VALUES (NEW.submitter, 1, NEW.created_ms / 60000 / 10.0 - 3.3219)
     ON CONFLICT DO UPDATE SET ready = ready + 1,
       charge = iif(ready = 0 AND running = 0, max(charge, excluded.charge), charge);
-  INSERT INTO submitter_queue (submitter, priority, ready, running, charge)
-    SELECT name, NEW.priority, 1, running, charge FROM submitter WHERE name = NEW.submitter
-    ON CONFLICT DO UPDATE SET ready = ready + 1;
+  INSERT INTO submitter_queue (submitter, priority, ready, running, charge, job_id)
+    SELECT name, NEW.priority, 1, running, charge, NEW.id FROM submitter
+    WHERE name = NEW.submitter
+    ON CONFLICT DO UPDATE SET ready = ready + 1, job_id = min(job_id, excluded.job_id);
 END;
 
 CREATE TRIGGER job_enters_queue AFTER UPDATE OF state, waits_for, retry_due, priority ON job
 WHEN NEW.ready AND (NOT OLD.ready OR NEW.priority <> OLD.priority)
 BEGIN
   INSERT INTO submitter (name, ready, charge)
-    VALUES (NEW.submitter, 1, (julianday('now') - 2440587.5) * 144.0 - 3.3219)
+    VALUES (NEW.submitter, 1, CAST((julianday('now') - 2440587.5) * 1440.0 AS INTEGER) / 10.0 - 3.3219)
     ON CONFLICT DO UPDATE SET ready = ready + 1,
       charge = iif(ready = 0 AND running = 0, max(charge, excluded.charge), charge);
-  INSERT INTO submitter_queue (submitter, priority, ready, running, charge)
-    SELECT name, NEW.priority, 1, running, charge FROM submitter WHERE name = NEW.submitter
-    ON CONFLICT DO UPDATE SET ready = ready + 1;
+  INSERT INTO submitter_queue (submitter, priority, ready, running, charge, job_id)
+    SELECT name, NEW.priority, 1, running, charge, NEW.id FROM submitter
+    WHERE name = NEW.submitter
+    ON CONFLICT DO UPDATE SET ready = ready + 1, job_id = min(job_id, excluded.job_id);
 END;
 
 CREATE TRIGGER job_leaves_queue AFTER UPDATE OF state, waits_for, retry_due, priority ON job
@@ -161,7 +165,8 @@ BEGIN
   UPDATE submitter SET ready = ready - 1 WHERE name = OLD.submitter;
   DELETE FROM submitter_queue
     WHERE submitter = OLD.submitter AND priority = OLD.priority AND ready = 1;
-  UPDATE submitter_queue SET ready = ready - 1
+  UPDATE submitter_queue SET ready = ready - 1, job_id = (SELECT min(id) FROM job
+      WHERE ready = 1 AND submitter = OLD.submitter AND priority = OLD.priority)
     WHERE submitter = OLD.submitter AND priority = OLD.priority;
 END;
 
@@ -176,6 +181,14 @@ WHEN OLD.state IN ('starting', 'running', 'cancelling')
   AND NEW.state NOT IN ('starting', 'running', 'cancelling')
 BEGIN
   UPDATE submitter SET running = running - 1 WHERE name = OLD.submitter;
+END;
+
+-- Who waits for the answer of an equal job goes on when that one ends or will have none.
+CREATE TRIGGER job_answers AFTER UPDATE OF state ON job
+WHEN OLD.state IN ('starting', 'running', 'retry_wait')
+  AND NEW.state NOT IN ('starting', 'running', 'retry_wait')
+BEGIN
+  UPDATE job SET waits_for = NULL WHERE waits_for = NEW.id;
 END;
 
 -- The queue is in the order of what the submitters have and use.

@@ -15,6 +15,7 @@
 #include "server/exec/disk.h"
 #include "server/exec/janitor.h"
 #include "server/exec/pool.h"
+#include "server/exec/share.h"
 #include "server/http/access.h"
 #include "server/http/answers.h"
 #include "server/http/feed.h"
@@ -82,6 +83,7 @@ static enum status parts_open_store(const struct options *options, struct parts 
     parts->exit_code = maintenance_exit_code(status);
   }
   if (status == STATUS_OK) {
+    store_set_sharing(service->store, share_files, (void *)options->data);
     status = store_recover(service->store, &recovered, error);
   }
   if (status == STATUS_OK) {

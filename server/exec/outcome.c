@@ -20,6 +20,10 @@ enum {
   ARTIFACTS_MAX = 4096
 };
 
+/* Of its limit: a worker that dies with so much in use has met it. An allocation that fails does
+ * not count, so the share leaves room for a large one. */
+#define MEMORY_SHARE 0.75
+
 static void outcome_set(struct outcome *outcome, enum attempt_end end, const char *reason_code,
                         const char *format, ...) __attribute__((format(printf, 4, 5)));
 
@@ -171,6 +175,7 @@ void outcome_judge(struct outcome *outcome, const struct process_end *end, enum 
     outcome_set(outcome, ATTEMPT_WORKER_LOST, "worker_killed", "Signal %d (%s) ended the worker.",
                 end->signal, sigdescr_np(end->signal) ? sigdescr_np(end->signal) : "unknown");
   } else {
+    outcome_read(outcome, output_path, NULL); /* an error document, if any */
     outcome_set(outcome, ATTEMPT_WORKER_LOST,
                 end->exit_code == EXIT_INTERNAL ? "internal_error" : "worker_failed",
                 "The worker ended with exit code %d.", end->exit_code);
@@ -179,6 +184,24 @@ void outcome_judge(struct outcome *outcome, const struct process_end *end, enum 
   outcome->attempt.signal = end->signal;
   outcome->attempt.cpu_s = end->cpu_s;
   outcome->attempt.peak_memory_MB = end->peak_memory_MB;
+}
+
+void outcome_blame_memory(struct outcome *outcome, const struct process_end *end,
+                          uint64_t limit_bytes) {
+  const json_t *problem = json_object_get(outcome->result, "error");
+  const char *code = json_string_value(json_object_get(problem, "code"));
+  bool said = code && strcmp(code, "no_memory") == 0;
+  bool full = end->peak_memory_MB * 1048576 >= MEMORY_SHARE * (double)limit_bytes;
+  if (limit_bytes == 0) {
+    return;
+  }
+  if (outcome->attempt.end == ATTEMPT_FAILED && strcmp(outcome->reason_code, "no_memory") == 0) {
+    strcpy(outcome->reason_code, "memory_limit"); /* with the result as far as it came */
+  } else if (outcome->attempt.end == ATTEMPT_WORKER_LOST && (said || full)) {
+    outcome_set(outcome, ATTEMPT_FAILED, "memory_limit",
+                "The solve needs more memory than the %.0f MB that it may use.",
+                (double)limit_bytes / 1e6);
+  }
 }
 
 void outcome_not_started(struct outcome *outcome, const struct error *error) {

@@ -35,6 +35,11 @@ struct outcome {
 void outcome_judge(struct outcome *outcome, const struct process_end *end, enum stop_cause cause,
                    const char *output_path, const char *artifacts_dir);
 
+/* Names the cause of a worker's death that the limit of its memory (bytes, 0: none) explains: it
+ * said so itself, or it had used most of it. Such a job is not tried again. */
+void outcome_blame_memory(struct outcome *outcome, const struct process_end *end,
+                          uint64_t limit_bytes);
+
 /* The outcome of a worker that could not be started. */
 void outcome_not_started(struct outcome *outcome, const struct error *error);
 

@@ -189,12 +189,18 @@ static unsigned study_jobs(const struct pool_settings *settings) {
   return cores > settings->workers ? (unsigned)cores / settings->workers : 1;
 }
 
+/* The least of the limits of the daemon and the job, 0: none. */
+static uint64_t memory_limit(const struct pool_settings *settings, const struct claim *claim) {
+  uint64_t most = settings->memory_limit_bytes, own = claim->memory_bytes;
+  return own != 0 && (most == 0 || own < most) ? own : most;
+}
+
 static void slot_run(struct slot *slot, const struct claim *claim) {
   const struct pool_settings *settings = &slot->pool->settings;
   struct run_settings run = {.data = settings->data,
                              .solver = settings->solver,
                              .isolation = settings->isolation,
-                             .memory_limit_bytes = settings->memory_limit_bytes,
+                             .memory_limit_bytes = memory_limit(settings, claim),
                              .files_limit_bytes = settings->files_limit_bytes,
                              .study_jobs = study_jobs(settings),
                              .time_limit_s = settings->time_limit_s,
@@ -245,7 +251,7 @@ static void *slot_main(void *context) {
   struct slot *slot = context;
   unsigned seen = 0;
   while (slot_wait(slot, &seen)) {
-    struct claim claim;
+    struct claim claim = {0};
     struct error error;
     bool claimed = true;
     while (claimed) {
@@ -260,6 +266,9 @@ static void *slot_main(void *context) {
       if (claimed) {
         slot_run(slot, &claim);
         free(claim.document);
+      } else if (open && claim.answered_id != 0) {
+        slot->pool->settings.changed(slot->pool->settings.context, claim.answered_id);
+        claimed = true; /* there may be more */
       }
     }
   }

@@ -194,6 +194,7 @@ void run_attempt(const struct run_settings *settings, const struct claim *claim,
     output = paths.result;
   }
   outcome_judge(outcome, &end, cause, output, paths.artifacts);
+  outcome_blame_memory(outcome, &end, settings->memory_limit_bytes);
   if (outcome->attempt.result && run_sync(&paths, outcome, &error) != STATUS_OK) {
     outcome_set_files_lost(outcome, &error);
   }

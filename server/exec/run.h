@@ -29,7 +29,7 @@ struct run_hooks {
   enum stop_cause (*stop_wanted)(void *context);
 };
 
-enum { RUN_DIRECTORY_SIZE = 64 };
+enum { RUN_DIRECTORY_SIZE = STORE_DIRECTORY_SIZE };
 
 /* Writes the attempt's folder "attempts/JOB-NUMBER", relative to the data directory. */
 void run_directory(int64_t job_id, int64_t attempt, char name[RUN_DIRECTORY_SIZE]);

@@ -33,62 +33,6 @@ static enum status attempt_check(sqlite3 *db, int64_t job_id, int64_t attempt,
   return status;
 }
 
-/* Reads the oldest job that may start into *claim; job_id is 0 when there is none. */
-static enum status claim_find(sqlite3 *db, int64_t now, struct claim *claim, struct error *error) {
-  sqlite3_stmt *statement;
-  enum status status =
-      sql_prepare(db, &statement, error,
-                  "SELECT id, attempt + 1, timeout_s, document FROM job WHERE state = 'queued' "
-                  "OR (state = 'retry_wait' AND not_before_ms <= ?) ORDER BY id LIMIT 1",
-                  "i", now);
-  if (status != STATUS_OK) {
-    return status;
-  }
-  int row = 0;
-  status = sql_step(statement, &row, error);
-  if (status == STATUS_OK && row) {
-    *claim = (struct claim){.job_id = sqlite3_column_int64(statement, 0),
-                            .attempt = sqlite3_column_int64(statement, 1),
-                            .timeout_s = sqlite3_column_double(statement, 2),
-                            .document = sql_text_copy(statement, 3)};
-    if (!claim->document) {
-      status = error_set(error, STATUS_NO_MEMORY, NULL, "No memory for a job document.");
-    }
-  }
-  sql_done(statement);
-  return status;
-}
-
-enum status store_claim(struct store *store, struct claim *claim, bool *claimed,
-                        struct error *error) {
-  int64_t now = clock_unix_ms();
-  *claim = (struct claim){0};
-  *claimed = false;
-  enum status status = store_write_begin(store, error);
-  if (status != STATUS_OK) {
-    return status;
-  }
-  status = claim_find(store->writer, now, claim, error);
-  if (status == STATUS_OK && claim->job_id != 0) {
-    status = sql_run(store->writer, error,
-                     "UPDATE job SET state = 'starting', attempt = ?, started_ms = ?, "
-                     "reason_code = '', message = '' WHERE id = ?",
-                     "iii", claim->attempt, now, claim->job_id);
-    if (status == STATUS_OK) {
-      status = sql_run(store->writer, error,
-                       "INSERT INTO attempt (job_id, number, created_ms) VALUES (?, ?, ?)", "iii",
-                       claim->job_id, claim->attempt, now);
-    }
-  }
-  status = store_write_end(store, status, error);
-  *claimed = status == STATUS_OK && claim->job_id != 0;
-  if (!*claimed) {
-    free(claim->document);
-    claim->document = NULL;
-  }
-  return status;
-}
-
 enum status store_attempt_running(struct store *store, int64_t job_id, int64_t attempt, int64_t pid,
                                   struct error *error) {
   enum job_state state = JOB_STATE_QUEUED;
@@ -190,12 +134,20 @@ static const char *end_word(enum attempt_end end, enum job_state after) {
 static enum status attempt_close(sqlite3 *db, const struct attempt_outcome *outcome,
                                  enum job_state state, int64_t now, struct error *error) {
   return sql_run(db, error,
-                 "UPDATE attempt SET outcome = ?, reason_code = ?, "
+                 "UPDATE attempt SET outcome = ?, reason_code = ?, message = ?, "
                  "exit_code = iif(? < 0, NULL, ?), signal = nullif(?, 0), finished_ms = ?, "
                  "cpu_s = ?, peak_memory_MB = ? WHERE job_id = ? AND number = ?",
-                 "ttiiiiddii", end_word(outcome->end, state), outcome->reason_code,
-                 (int64_t)outcome->exit_code, (int64_t)outcome->exit_code, (int64_t)outcome->signal,
-                 now, outcome->cpu_s, outcome->peak_memory_MB, outcome->job_id, outcome->attempt);
+                 "tttiiiiddii", end_word(outcome->end, state), outcome->reason_code,
+                 outcome->message, (int64_t)outcome->exit_code, (int64_t)outcome->exit_code,
+                 (int64_t)outcome->signal, now, outcome->cpu_s, outcome->peak_memory_MB,
+                 outcome->job_id, outcome->attempt);
+}
+
+/* The version of the solver that made the result, "" without one. */
+static const char *solver_version(const struct attempt_outcome *outcome) {
+  const json_t *provenance = json_object_get(outcome->result, "provenance");
+  const char *version = json_string_value(json_object_get(provenance, "version"));
+  return outcome->result_text && version ? version : "";
 }
 
 static enum status attempt_apply(sqlite3 *db, const struct attempt_outcome *outcome,
@@ -206,6 +158,9 @@ static enum status attempt_apply(sqlite3 *db, const struct attempt_outcome *outc
   bool cancelled = *state == JOB_STATE_CANCELLED;
   bool lost = outcome->end == ATTEMPT_WORKER_LOST;
   enum status status = attempt_close(db, outcome, *state, now, error);
+  if (status == STATUS_OK) {
+    status = queue_charge(db, outcome->job_id, outcome->attempt, now, error);
+  }
   if (status == STATUS_OK && outcome->result_text && job_state_terminal(*state) && !cancelled) {
     status = result_insert(db, outcome, now, error);
   }
@@ -216,14 +171,14 @@ static enum status attempt_apply(sqlite3 *db, const struct attempt_outcome *outc
   }
   if (status == STATUS_OK) {
     int64_t delay = outcome->retry_delay_ms << failures;
-    status = sql_run(db, error,
-                     "UPDATE job SET state = ?, reason_code = ?, message = ?, "
-                     "failures = failures + ?, not_before_ms = ?, finished_ms = nullif(?, 0) "
-                     "WHERE id = ?",
-                     "tttiiii", job_state_word(*state),
-                     cancelled ? "cancel_requested" : outcome->reason_code,
-                     cancelled ? "Cancelled on request." : outcome->message, (int64_t)lost,
-                     now + delay, job_state_terminal(*state) ? now : (int64_t)0, outcome->job_id);
+    status = sql_run(
+        db, error,
+        "UPDATE job SET state = ?, reason_code = ?, message = ?, "
+        "failures = failures + ?, not_before_ms = ?, retry_due = 0, "
+        "finished_ms = nullif(?, 0), solver_version = ? WHERE id = ?",
+        "tttiiiti", job_state_word(*state), cancelled ? "cancel_requested" : outcome->reason_code,
+        cancelled ? "Cancelled on request." : outcome->message, (int64_t)lost, now + delay,
+        job_state_terminal(*state) ? now : (int64_t)0, solver_version(outcome), outcome->job_id);
   }
   return status;
 }
@@ -254,7 +209,8 @@ enum status store_recover(struct store *store, int64_t *count, struct error *err
   sqlite3 *db = store->writer;
   status = sql_run(db, error,
                    "UPDATE attempt SET outcome = 'lost', reason_code = 'daemon_stopped', "
-                   "finished_ms = ? WHERE outcome = ''",
+                   "message = 'The daemon stopped while the worker ran.', finished_ms = ? "
+                   "WHERE outcome = ''",
                    "i", now);
   if (status == STATUS_OK) {
     status = sql_run(db, error,

@@ -31,7 +31,9 @@ struct store {
   struct units *units; /* for values in SI */
   struct group *group; /* of submissions that are committed together */
   pthread_mutex_t health_mutex;
-  struct error health; /* of writing: STATUS_OK, or how the last transaction failed */
+  struct error health;      /* of writing: STATUS_OK, or how the last transaction failed */
+  store_share_files *share; /* NULL: no result is used again */
+  void *share_context;
 };
 
 /* Opens one connection and runs its settings, a list of pragmas. *db is the caller's to close, also
@@ -80,9 +82,23 @@ enum status store_no_job(int64_t id, struct error *error);
 enum status store_record_read(sqlite3 *db, sqlite3_stmt *row, struct job_record *record,
                               struct error *error);
 
+/* Charges the worker time of an attempt that ends at `now` (unix ms) to the job's submitter, and
+ * forgets submitters whose use has faded. In a write transaction. */
+enum status queue_charge(sqlite3 *db, int64_t job_id, int64_t attempt, int64_t now,
+                         struct error *error);
+
+/* How a job that asks for it can be answered. */
+enum reuse { REUSE_NONE, REUSE_ANSWERED, REUSE_WAITS };
+
+/* Looks for a job equal to the queued job `id`: one that succeeded answers it (it is succeeded
+ * then), one that runs makes it wait. In a write transaction. */
+enum status reuse_try(struct store *store, int64_t id, enum reuse *reuse, struct error *error);
+
 #define JOB_COLUMNS                                                                                \
   "job.id, job.state, job.reason_code, job.message, job.kind, job.name, job.spec_hash, "           \
   "job.attempt, coalesce(job.retry_of, 0), job.created_ms, coalesce(job.started_ms, 0), "          \
-  "coalesce(job.finished_ms, 0), EXISTS (SELECT 1 FROM result WHERE result.job_id = job.id)"
+  "coalesce(job.finished_ms, 0), EXISTS (SELECT 1 FROM result WHERE result.job_id = job.id), "     \
+  "job.retry_reason, job.submitter, job.priority, coalesce(job.reused_from, 0), "                  \
+  "coalesce(job.waits_for, 0)"
 
 #endif

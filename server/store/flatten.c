@@ -109,6 +109,16 @@ static enum status flatten_child(struct flattening *to, const char *key, const j
   return status;
 }
 
+/* Whether a member of the document is no parameter: what is about people, and about the queue. */
+static bool key_is_remark(const char *key) {
+  static const char *const remarks[] = {"name", "labels", "memory", "priority", "reuse"};
+  bool remark = false;
+  for (size_t i = 0; i < sizeof remarks / sizeof *remarks; i++) {
+    remark = remark || strcmp(key, remarks[i]) == 0;
+  }
+  return remark;
+}
+
 /* The parser has bounded the depth of the document, and with it this recursion. */
 static enum status flatten_value(struct flattening *to, const json_t *value) {
   enum status status = STATUS_OK;
@@ -116,10 +126,9 @@ static enum status flatten_value(struct flattening *to, const json_t *value) {
     const char *key;
     json_t *child;
     json_object_foreach((json_t *)value, key, child) {
-      bool about_people =
-          to->pointer[0] == '\0' && (strcmp(key, "name") == 0 || strcmp(key, "labels") == 0);
+      bool remark = to->pointer[0] == '\0' && key_is_remark(key);
       bool table = strcmp(key, "csv") == 0; /* data, no parameter: the job's document has it */
-      if (!about_people && !table && status == STATUS_OK) {
+      if (!remark && !table && status == STATUS_OK) {
         status = flatten_child(to, key, child);
       }
     }

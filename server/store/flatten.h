@@ -10,8 +10,9 @@
 
 struct units;
 
-/* Inserts one row for every leaf of the document but its name and labels: quantities in SI with
- * their unit, numbers and flags as they are, words as text. To be called in a transaction. */
+/* Inserts one row for every leaf of the document but its name, its labels and what is about the
+ * queue: quantities in SI with their unit, numbers and flags as they are, words as text. To be
+ * called in a transaction. */
 enum status flatten_store(sqlite3 *db, int64_t job_id, const json_t *root,
                           const struct units *units, struct error *error);
 

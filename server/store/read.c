@@ -11,6 +11,8 @@ void job_record_clear(struct job_record *record) {
   free(record->kind);
   free(record->name);
   free(record->spec_hash);
+  free(record->retry_reason);
+  free(record->submitter);
   json_decref(record->labels);
   json_decref(record->metrics);
   json_decref(record->artifacts);
@@ -78,12 +80,13 @@ static json_t *optional_time(sqlite3_stmt *row, int column) {
 
 static void take_attempt(json_t *into, sqlite3_stmt *row) {
   json_array_append_new(
-      into, json_pack("{s:I, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "number",
+      into, json_pack("{s:I, s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "number",
                       (json_int_t)sqlite3_column_int64(row, 0), "outcome", sql_text(row, 1),
-                      "reason_code", sql_text(row, 2), "pid", optional_integer(row, 3), "exit_code",
-                      optional_integer(row, 4), "signal", optional_integer(row, 5), "started",
-                      optional_time(row, 6), "finished", optional_time(row, 7), "cpu_s",
-                      optional_number(row, 8), "peak_memory_MB", optional_number(row, 9)));
+                      "reason_code", sql_text(row, 2), "message", sql_text(row, 10), "pid",
+                      optional_integer(row, 3), "exit_code", optional_integer(row, 4), "signal",
+                      optional_integer(row, 5), "started", optional_time(row, 6), "finished",
+                      optional_time(row, 7), "cpu_s", optional_number(row, 8), "peak_memory_MB",
+                      optional_number(row, 9)));
 }
 
 enum status store_record_read(sqlite3 *db, sqlite3_stmt *row, struct job_record *record,
@@ -100,12 +103,18 @@ enum status store_record_read(sqlite3 *db, sqlite3_stmt *row, struct job_record 
                                 .started_ms = sqlite3_column_int64(row, 10),
                                 .finished_ms = sqlite3_column_int64(row, 11),
                                 .has_result = sqlite3_column_int(row, 12) != 0,
+                                .retry_reason = sql_text_copy(row, 13),
+                                .submitter = sql_text_copy(row, 14),
+                                .priority = sqlite3_column_int(row, 15),
+                                .reused_from = sqlite3_column_int64(row, 16),
+                                .waits_for = sqlite3_column_int64(row, 17),
                                 .labels = json_object(),
                                 .metrics = json_object(),
                                 .artifacts = json_array()};
   enum status status = STATUS_OK;
   if (!record->reason_code || !record->message || !record->kind || !record->name ||
-      !record->spec_hash || !record->labels || !record->metrics || !record->artifacts) {
+      !record->spec_hash || !record->retry_reason || !record->submitter || !record->labels ||
+      !record->metrics || !record->artifacts) {
     status = error_set(error, STATUS_NO_MEMORY, NULL, "No memory for a job.");
   } else if (!job_state_parse(sql_text(row, 1), &record->state)) {
     status = error_set(error, STATUS_INTERNAL, NULL, "Job %lld has an unknown state.",
@@ -242,7 +251,7 @@ enum status store_attempts(struct store *store, int64_t id, json_t **attempts,
                            struct error *error) {
   return job_rows_read(store,
                        "SELECT number, outcome, reason_code, pid, exit_code, signal, created_ms, "
-                       "finished_ms, cpu_s, peak_memory_MB FROM attempt WHERE job_id = ? "
+                       "finished_ms, cpu_s, peak_memory_MB, message FROM attempt WHERE job_id = ? "
                        "ORDER BY number",
                        id, json_array(), take_attempt, attempts, error);
 }

@@ -119,6 +119,11 @@ void store_close(struct store *store) {
   free(store);
 }
 
+void store_set_sharing(struct store *store, store_share_files *share, void *context) {
+  store->share = share;
+  store->share_context = context;
+}
+
 static int reader_find_free(const struct store *store) {
   for (int i = 0; i < STORE_READERS; i++) {
     if (!store->reader_busy[i]) {

@@ -19,9 +19,11 @@
 struct store;
 
 enum {
-  STORE_FAILURES_MAX = 2,  /* lost workers after which one more failure is final */
-  STORE_ATTEMPTS_MAX = 10, /* attempts of one job that may be lost with the daemon */
-  STORE_LABELS_MAX = 8     /* label filters of one list query */
+  STORE_DIRECTORY_SIZE = 64, /* of the name of an attempt's folder */
+  STORE_FAILURES_MAX = 2,    /* lost workers after which one more failure is final */
+  STORE_ATTEMPTS_MAX = 10,   /* attempts of one job that may be lost with the daemon */
+  STORE_LABELS_OWN_MAX = 32, /* labels of one job */
+  STORE_LABELS_MAX = 8       /* label filters of one list query */
 };
 
 /* Opens or creates DIR/pneulab.db and brings its schema up to date. Refused, with nothing changed
@@ -30,6 +32,18 @@ enum {
  * owns *store. */
 enum status store_open(const char *directory, struct store **store, struct error *error);
 void store_close(struct store *store);
+
+/* Gives an attempt of a job files of its own that are those of the result in the folder `from`:
+ * `names` is an array of file names. Writes the folder that they are in to `directory`; both are
+ * relative to the data directory. Called inside of a transaction: it must not ask the store.
+ * STATUS_NOT_FOUND when they cannot be had (any more); then the job is solved like any other. */
+typedef enum status store_share_files(void *context, const char *from, const json_t *names,
+                                      int64_t job_id, int64_t attempt,
+                                      char directory[STORE_DIRECTORY_SIZE], struct error *error);
+
+/* Lets jobs that ask for it be answered with the result of an equal one. Without it none is. To be
+ * called before any other thread uses the store. */
+void store_set_sharing(struct store *store, store_share_files *share, void *context);
 
 /* ---- submitting -------------------------------------------------------------------------- */
 
@@ -40,11 +54,17 @@ struct submission {
   double timeout_s;            /* 0: none */
   const char *idempotency_key; /* or NULL */
   int64_t retry_of;            /* or 0 */
+  const char *retry_reason;    /* or NULL */
+  const char *submitter;       /* whose share of the workers it uses; NULL: the label "user" */
+  int priority;                /* -100 .. 100 */
+  uint64_t memory_bytes;       /* limit of a worker process; 0: none of its own */
+  bool reuse;                  /* the result of an equal job will do */
 };
 
-/* Makes the job durable in state queued and stores its id. When the idempotency key is known,
- * nothing is written and *replayed is set: *id is then the earlier job, or the answer is
- * STATUS_CONFLICT if that one had another document. */
+/* Makes the job durable in state queued and stores its id; with `reuse` and an equal job that
+ * succeeded with this version of the solver it is succeeded at once, with that one's result. When
+ * the idempotency key is known, nothing is written and *replayed is set: *id is then the earlier
+ * job, or the answer is STATUS_CONFLICT if that one had another document. */
 enum status store_submit(struct store *store, const struct submission *submission, int64_t *id,
                          bool *replayed, struct error *error);
 
@@ -61,17 +81,30 @@ enum status store_cancel(struct store *store, int64_t id, enum job_state *state,
  * STATUS_CONFLICT when the job is not queued (not held). */
 enum status store_hold(struct store *store, int64_t id, bool hold, struct error *error);
 
+/* Changes what people may change of a job: the members "name" (text or null), "labels" (object of
+ * texts or nulls, or null) and "priority" (number or null) of a JSON merge patch (RFC 7396), of
+ * which the values have been checked. STATUS_NOT_FOUND; STATUS_CONFLICT for a terminal job, and for
+ * the priority of one that no longer waits; STATUS_INVALID at /labels for more than
+ * STORE_LABELS_OWN_MAX of them. */
+enum status store_patch(struct store *store, int64_t id, const json_t *patch, struct error *error);
+
 /* ---- attempts ---------------------------------------------------------------------------- */
 
 struct claim {
   int64_t job_id;
   int64_t attempt;
   double timeout_s;
-  char *document; /* malloc'd, owned by the holder of the claim */
+  uint64_t memory_bytes; /* 0: no limit of its own */
+  char *document;        /* malloc'd, owned by the holder of the claim */
+  int64_t answered_id;   /* when nothing was claimed, or 0: see store_claim */
 };
 
-/* Takes the oldest job that may start, makes it `starting` under a new attempt number and fills
- * *claim; *claimed is false when none waits. */
+/* Takes the next job that may start, makes it `starting` under a new attempt number and fills
+ * *claim; *claimed is false when none waits. Next is, of the jobs with the highest priority, one of
+ * the submitter with the fewest running jobs; of equals, of the one who used least worker time of
+ * late (half counts after ten minutes); of his the oldest. A job that may be answered with an equal
+ * one's result is: then *claimed is false, claim->answered_id names it, and there may be more. One
+ * that is equal to a running job waits for its end. */
 enum status store_claim(struct store *store, struct claim *claim, bool *claimed,
                         struct error *error);
 
@@ -126,7 +159,10 @@ struct job_record {
   enum job_state state;
   char *reason_code, *message, *kind, *name, *spec_hash;
   int64_t attempt;
-  int64_t retry_of;                            /* 0: none */
+  int64_t retry_of; /* 0: none */
+  char *retry_reason, *submitter;
+  int priority;
+  int64_t reused_from, waits_for;              /* 0: none */
   int64_t created_ms, started_ms, finished_ms; /* 0: not yet */
   bool has_result;
   json_t *labels;    /* object of strings */

@@ -10,6 +10,12 @@ static const char *submission_text(const struct submission *submission, const ch
   return text ? text : "";
 }
 
+static const char *submission_submitter(const struct submission *submission) {
+  const json_t *labels = json_object_get(submission->root, "labels");
+  const char *user = json_string_value(json_object_get(labels, "user"));
+  return submission->submitter ? submission->submitter : user ? user : "";
+}
+
 /* Looks for an earlier job with the same idempotency key. *id is 0 when there is none. */
 static enum status submission_find(sqlite3 *db, const struct submission *submission, int64_t *id,
                                    struct error *error) {
@@ -63,13 +69,18 @@ static enum status submission_labels(sqlite3 *db, int64_t id, const json_t *labe
 static enum status submission_insert(struct store *store, const struct submission *submission,
                                      int64_t *id, struct error *error) {
   sqlite3 *db = store->writer;
-  enum status status =
-      sql_run(db, error,
-              "INSERT INTO job (kind, name, document, spec_hash, timeout_s, retry_of, "
-              "idempotency_key, created_ms) VALUES (?, ?, ?, ?, ?, nullif(?, 0), ?, ?)",
-              "ttttditi", submission_text(submission, "kind"), submission_text(submission, "name"),
-              submission->document, submission->spec_hash, submission->timeout_s,
-              submission->retry_of, submission->idempotency_key, clock_unix_ms());
+  /* No job is younger than the one before, also when the clock is set back. */
+  enum status status = sql_run(
+      db, error,
+      "INSERT INTO job (kind, name, document, spec_hash, timeout_s, retry_of, idempotency_key, "
+      "created_ms, submitter, priority, memory_bytes, reuse, retry_reason) "
+      "SELECT ?, ?, ?, ?, ?, nullif(?, 0), ?, "
+      "max(?, coalesce((SELECT created_ms FROM job ORDER BY id DESC LIMIT 1), 0)), ?, ?, ?, ?, ?",
+      "ttttdititiiit", submission_text(submission, "kind"), submission_text(submission, "name"),
+      submission->document, submission->spec_hash, submission->timeout_s, submission->retry_of,
+      submission->idempotency_key, clock_unix_ms(), submission_submitter(submission),
+      (int64_t)submission->priority, (int64_t)submission->memory_bytes, (int64_t)submission->reuse,
+      submission->retry_reason ? submission->retry_reason : "");
   if (status != STATUS_OK) {
     return status;
   }
@@ -77,6 +88,10 @@ static enum status submission_insert(struct store *store, const struct submissio
   status = submission_labels(db, *id, json_object_get(submission->root, "labels"), error);
   if (status == STATUS_OK) {
     status = flatten_store(db, *id, submission->root, store->units, error);
+  }
+  if (status == STATUS_OK && submission->reuse) {
+    enum reuse reuse;
+    status = reuse_try(store, *id, &reuse, error);
   }
   return status;
 }

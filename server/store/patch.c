@@ -1,0 +1,100 @@
+#include "server/store/connection.h"
+#include "server/store/sql.h"
+
+static enum status patch_allowed(int64_t id, enum job_state state, const json_t *patch,
+                                 struct error *error) {
+  bool waits =
+      state == JOB_STATE_QUEUED || state == JOB_STATE_HELD || state == JOB_STATE_RETRY_WAIT;
+  if (json_object_size(patch) > 0 && job_state_terminal(state)) {
+    return error_set(error, STATUS_CONFLICT, NULL,
+                     "Job %lld is %s: a finished job is not changed any more.", (long long)id,
+                     job_state_word(state));
+  }
+  if (json_object_get(patch, "priority") && !waits) {
+    return error_set(error, STATUS_CONFLICT, "/priority",
+                     "Job %lld is %s: the priority can be changed only while a job waits.",
+                     (long long)id, job_state_word(state));
+  }
+  return STATUS_OK;
+}
+
+static enum status patch_label(sqlite3 *db, int64_t id, const char *name, const json_t *value,
+                               struct error *error) {
+  if (json_is_null(value)) {
+    return sql_run(db, error, "DELETE FROM job_label WHERE job_id = ? AND name = ?", "it", id,
+                   name);
+  }
+  return sql_run(db, error,
+                 "INSERT INTO job_label (job_id, name, value, kind, state, finished_ms, job_name) "
+                 "SELECT id, ?, ?, kind, state, finished_ms, name FROM job WHERE id = ? "
+                 "ON CONFLICT DO UPDATE SET value = excluded.value",
+                 "tti", name, json_string_value(value), id);
+}
+
+static enum status labels_count(sqlite3 *db, int64_t id, struct error *error) {
+  sqlite3_stmt *statement;
+  int row = 0;
+  enum status status = sql_prepare(db, &statement, error,
+                                   "SELECT count(*) FROM job_label WHERE job_id = ?", "i", id);
+  if (status == STATUS_OK) {
+    status = sql_step(statement, &row, error);
+  }
+  if (status == STATUS_OK && sqlite3_column_int(statement, 0) > STORE_LABELS_OWN_MAX) {
+    status = error_set(error, STATUS_INVALID, "/labels",
+                       "With these the job would have %d labels; at most %d are allowed. A label "
+                       "is removed by null.",
+                       sqlite3_column_int(statement, 0), STORE_LABELS_OWN_MAX);
+  }
+  sql_done(statement);
+  return status;
+}
+
+static enum status patch_labels(sqlite3 *db, int64_t id, const json_t *labels,
+                                struct error *error) {
+  const char *name;
+  json_t *value;
+  if (!labels) {
+    return STATUS_OK;
+  }
+  if (json_is_null(labels)) {
+    return sql_run(db, error, "DELETE FROM job_label WHERE job_id = ?", "i", id);
+  }
+  json_object_foreach((json_t *)labels, name, value) {
+    enum status status = patch_label(db, id, name, value, error);
+    if (status != STATUS_OK) {
+      return status;
+    }
+  }
+  return labels_count(db, id, error);
+}
+
+static enum status patch_apply(sqlite3 *db, int64_t id, const json_t *patch, struct error *error) {
+  const json_t *name = json_object_get(patch, "name");
+  const json_t *priority = json_object_get(patch, "priority");
+  enum status status = patch_labels(db, id, json_object_get(patch, "labels"), error);
+  if (status == STATUS_OK && name) {
+    status = sql_run(db, error, "UPDATE job SET name = ? WHERE id = ?", "ti",
+                     json_is_null(name) ? "" : json_string_value(name), id);
+  }
+  if (status == STATUS_OK && priority) {
+    status = sql_run(db, error, "UPDATE job SET priority = ? WHERE id = ?", "ii",
+                     (int64_t)json_number_value(priority), id);
+  }
+  return status;
+}
+
+enum status store_patch(struct store *store, int64_t id, const json_t *patch, struct error *error) {
+  enum job_state state = JOB_STATE_QUEUED;
+  enum status status = store_write_begin(store, error);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  status = store_state_of(store->writer, id, &state, error);
+  if (status == STATUS_OK) {
+    status = patch_allowed(id, state, patch, error);
+  }
+  if (status == STATUS_OK) {
+    status = patch_apply(store->writer, id, patch, error);
+  }
+  return store_write_end(store, status, error);
+}
