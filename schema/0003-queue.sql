@@ -37,16 +37,17 @@ UPDATE job SET created_ms = ordered.created_ms
 
 -- ---- lists --------------------------------------------------------------------------------
 -- A page is put together from one range of an index for each state (and kind): in each of them the
--- jobs stand in the order wanted. finished_ms is NULL exactly in the states that are not terminal.
+-- jobs stand in the order wanted, equals by their id, which every index ends with. finished_ms is
+-- NULL exactly in the states that are not terminal.
 
 DROP INDEX job_by_kind;
 DROP INDEX job_by_hash;
-CREATE INDEX job_by_kind ON job (kind, state, id);
-CREATE INDEX job_by_finished ON job (state, finished_ms, id);
-CREATE INDEX job_by_name ON job (state, name, id);
-CREATE INDEX job_by_kind_finished ON job (kind, state, finished_ms, id);
-CREATE INDEX job_by_kind_name ON job (kind, state, name, id);
-CREATE INDEX job_by_hash ON job (spec_hash, state, solver_version, id);
+CREATE INDEX job_by_kind ON job (kind, state);
+CREATE INDEX job_by_finished ON job (state, finished_ms);
+CREATE INDEX job_by_name ON job (state, name);
+CREATE INDEX job_by_kind_finished ON job (kind, state, finished_ms);
+CREATE INDEX job_by_kind_name ON job (kind, state, name);
+CREATE INDEX job_by_hash ON job (spec_hash, state, solver_version);
 
 -- What lists are filtered and sorted by beside the label, as in the job itself.
 ALTER TABLE job_label ADD COLUMN kind TEXT NOT NULL DEFAULT '';
@@ -120,7 +121,7 @@ CREATE TABLE submitter_queue (
 ) WITHOUT ROWID;
 CREATE INDEX submitter_queue_order ON submitter_queue (priority DESC, running, charge, job_id);
 
-CREATE INDEX job_ready ON job (submitter, priority, id) WHERE ready = 1;
+CREATE INDEX job_ready ON job (submitter, priority) WHERE ready = 1;
 CREATE INDEX job_retry ON job (not_before_ms) WHERE state = 'retry_wait' AND retry_due = 0;
 CREATE INDEX job_waits_for ON job (waits_for) WHERE waits_for IS NOT NULL;
 CREATE INDEX attempt_open ON attempt (job_id) WHERE outcome = '';

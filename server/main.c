@@ -71,6 +71,7 @@ static enum status parts_open_store(const struct options *options, struct parts 
   int64_t recovered = 0;
   service->data = options->data;
   service->isolation = &parts->isolation;
+  service->memory_limit_bytes = options->memory_limit_bytes;
   service->started_ms = clock_monotonic_ms();
   enum status status = access_create(options, &service->access, error);
   parts->exit_code = EXIT_FAILED;

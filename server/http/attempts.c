@@ -15,6 +15,14 @@ void attempts_list(struct request *request, struct reply *reply) {
     reply_error(reply, &error);
     return;
   }
+  size_t index;
+  json_t *attempt;
+  json_array_foreach(attempts, index, attempt) {
+    json_object_set_new(
+        attempt, "log",
+        json_sprintf("/api/v1/jobs/%lld/log?attempt=%lld", (long long)id,
+                     (long long)json_integer_value(json_object_get(attempt, "number"))));
+  }
   reply_json(reply, 200, json_pack("{s:o}", "attempts", attempts));
 }
 

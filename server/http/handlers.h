@@ -8,7 +8,10 @@
 handler jobs_list, jobs_submit, jobs_validate;
 
 /* job.c: one job */
-handler job_show, job_delete, job_cancel, job_retry, job_hold, job_release, job_document;
+handler job_show, job_delete, job_cancel, job_hold, job_release, job_document;
+
+/* retry.c, patch.c */
+handler job_retry, job_patch;
 
 /* events.c: the stream of news */
 handler events_show;

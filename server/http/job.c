@@ -6,8 +6,6 @@
 #include "server/http/handlers.h"
 #include "server/http/job_view.h"
 #include "server/http/waiters.h"
-#include "solver/job/json.h"
-#include "solver/job/spec.h"
 
 void job_show(struct request *request, struct reply *reply) {
   int64_t id;
@@ -76,68 +74,6 @@ void job_cancel(struct request *request, struct reply *reply) {
     waiters_job_ended(service->waiters, id);
   }
   job_view_reply_waiting(request, reply, state == JOB_STATE_CANCELLED ? 200 : 202, id, false);
-}
-
-/* A terminal job is immutable, so to retry it is to submit its document again. */
-static enum status job_resubmit(const struct service *service, int64_t id, int64_t *new_id,
-                                struct error *error) {
-  struct store *store = service->store;
-  struct job_record record;
-  struct job_spec spec = {.document = NULL};
-  struct submission submission = {.retry_of = id};
-  json_t *root = NULL;
-  char *text = NULL;
-  bool replayed;
-  enum status status = store_job(store, id, &record, error);
-  if (status != STATUS_OK) {
-    return status;
-  }
-  if (!job_state_terminal(record.state)) {
-    status = error_set(error, STATUS_CONFLICT, NULL,
-                       "Job %lld is %s; only a finished job can be tried again.", (long long)id,
-                       job_state_word(record.state));
-  }
-  job_record_clear(&record);
-  if (status == STATUS_OK) {
-    status = store_document(store, id, &text, error);
-  }
-  /* Checked anew: the rules may have changed since. */
-  if (status == STATUS_OK) {
-    status = job_reader_read(service->reader, text, strlen(text), &spec, error);
-  }
-  if (status == STATUS_OK) {
-    status = json_text_read(text, strlen(text), &root, error);
-  }
-  if (status == STATUS_OK) {
-    submission.document = text;
-    submission.root = root;
-    submission.spec_hash = spec.hash;
-    submission.timeout_s = spec.timeout_s;
-    status = disk_check(service->disk, error);
-  }
-  if (status == STATUS_OK) {
-    status = store_submit(store, &submission, new_id, &replayed, error);
-  }
-  job_spec_release(&spec);
-  json_decref(root);
-  free(text);
-  return status;
-}
-
-void job_retry(struct request *request, struct reply *reply) {
-  struct error error;
-  int64_t id, new_id;
-  if (!request_id(request, reply, &id)) {
-    return;
-  }
-  if (atomic_load(&request->service->draining)) {
-    reply_problem(reply, 503, "shutting_down", "The server is shutting down; try again later.");
-  } else if (job_resubmit(request->service, id, &new_id, &error) != STATUS_OK) {
-    reply_error(reply, &error);
-  } else {
-    pool_wake(request->service->pool);
-    job_view_reply_waiting(request, reply, 202, new_id, true);
-  }
 }
 
 static void job_hold_set(struct request *request, struct reply *reply, bool hold) {

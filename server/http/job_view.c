@@ -114,17 +114,27 @@ static json_t *links_view(const struct service *service, const struct job_record
 
 json_t *job_view(const struct service *service, const struct job_record *record, bool whole) {
   json_t *view =
-      json_pack("{s:I, s:s, s:s, s:s, s:s, s:s, s:O, s:I, s:s, s:o, s:o, s:o}", "id",
+      json_pack("{s:I, s:s, s:s, s:s, s:s, s:s, s:O, s:i, s:s, s:I, s:s, s:o, s:o, s:o}", "id",
                 (json_int_t)record->id, "state", job_state_word(record->state), "reason_code",
                 record->reason_code, "message", record->message, "kind", record->kind, "name",
-                record->name, "labels", record->labels, "attempt", (json_int_t)record->attempt,
-                "spec_hash", record->spec_hash, "created", time_view(record->created_ms), "started",
+                record->name, "labels", record->labels, "priority", record->priority, "submitter",
+                record->submitter, "attempt", (json_int_t)record->attempt, "spec_hash",
+                record->spec_hash, "created", time_view(record->created_ms), "started",
                 time_view(record->started_ms), "finished", time_view(record->finished_ms));
   if (view) {
     progress_set(service, record, view);
   }
   if (view && record->retry_of != 0) {
     json_object_set_new(view, "retry_of", json_integer(record->retry_of));
+  }
+  if (view && record->retry_reason[0] != '\0') {
+    json_object_set_new(view, "retry_reason", json_string(record->retry_reason));
+  }
+  if (view && record->reused_from != 0) {
+    json_object_set_new(view, "reused_from", json_integer(record->reused_from));
+  }
+  if (view && record->waits_for != 0) {
+    json_object_set_new(view, "waits_for", json_integer(record->waits_for));
   }
   if (view && record->has_result) {
     json_object_set(view, "metrics", record->metrics);

@@ -4,22 +4,18 @@
 #include "server/base/log.h"
 #include "server/http/handlers.h"
 #include "server/http/job_view.h"
-#include "solver/job/json.h"
-#include "solver/job/spec.h"
+#include "server/http/submission.h"
 
 enum { KEY_MAX = 200, LIST_LIMIT = 50, LIST_LIMIT_MAX = 500 };
 
-/* Checks the request's job document. On success *spec and *root are the caller's. */
-static bool document_check(const struct request *request, struct reply *reply,
-                           struct job_spec *spec, json_t **root) {
+/* Reads the request's job document; otherwise replies why not and returns false. */
+static bool body_read(const struct request *request, struct reply *reply,
+                      struct job_document *document) {
   struct error error = {.status = STATUS_OK};
   const char *text = request->body ? request->body : "";
-  if (job_reader_read(request->service->reader, text, request->body_size, spec, &error) ==
-          STATUS_OK &&
-      json_text_read(text, request->body_size, root, &error) == STATUS_OK) {
+  if (document_read(request, text, request->body_size, document, &error) == STATUS_OK) {
     return true;
   }
-  job_spec_release(spec);
   reply_error(reply, &error);
   return false;
 }
@@ -35,32 +31,40 @@ static bool key_read(const struct request *request, struct reply *reply, const c
   return true;
 }
 
+/* Whether the job was answered as soon as it was submitted. */
+static bool job_answered(const struct service *service, int64_t id) {
+  struct job_record record;
+  if (store_job(service->store, id, &record, NULL) != STATUS_OK) {
+    return false;
+  }
+  bool answered = record.reused_from != 0;
+  job_record_clear(&record);
+  return answered;
+}
+
 void jobs_submit(struct request *request, struct reply *reply) {
   struct service *service = request->service;
-  struct job_spec spec = {.document = NULL};
+  struct job_document document;
   struct error error;
-  struct submission submission = {.document = request->body};
-  json_t *root = NULL;
+  const char *key;
   int64_t id;
   bool replayed;
   if (atomic_load(&service->draining)) {
     reply_problem(reply, 503, "shutting_down", "The server is shutting down; try again later.");
     return;
   }
-  if (!key_read(request, reply, &submission.idempotency_key) ||
-      !document_check(request, reply, &spec, &root)) {
+  if (!key_read(request, reply, &key) || !body_read(request, reply, &document)) {
     return;
   }
-  submission.root = root;
-  submission.spec_hash = spec.hash;
-  submission.timeout_s = spec.timeout_s;
+  document.submission.idempotency_key = key;
   enum status status = disk_check(service->disk, &error);
   if (status == STATUS_OK) {
-    status = store_submit(service->store, &submission, &id, &replayed, &error);
+    status = store_submit(service->store, &document.submission, &id, &replayed, &error);
   }
-  json_decref(root);
-  job_spec_release(&spec);
-  if (status == STATUS_CONFLICT && submission.idempotency_key) {
+  bool answered =
+      status == STATUS_OK && document.submission.reuse && !replayed && job_answered(service, id);
+  document_release(&document);
+  if (status == STATUS_CONFLICT && key) {
     reply_problem(reply, 422, "idempotency_key_reused", "%s", error.message);
     return;
   }
@@ -73,18 +77,17 @@ void jobs_submit(struct request *request, struct reply *reply) {
               LOG_TEXT("caller", request->caller.name), LOG_TEXT("request", request->id));
   }
   pool_wake(service->pool);
-  job_view_reply_waiting(request, reply, 202, id, true);
+  job_view_reply_waiting(request, reply, answered ? 200 : 202, id, true);
 }
 
 void jobs_validate(struct request *request, struct reply *reply) {
-  struct job_spec spec = {.document = NULL};
-  json_t *root = NULL;
-  if (document_check(request, reply, &spec, &root)) {
+  struct job_document document;
+  if (body_read(request, reply, &document)) {
     reply_json(reply, 200,
                json_pack("{s:b, s:s, s:s}", "valid", 1, "kind",
-                         json_string_value(json_object_get(root, "kind")), "spec_hash", spec.hash));
-    json_decref(root);
-    job_spec_release(&spec);
+                         json_string_value(json_object_get(document.root, "kind")), "spec_hash",
+                         document.spec.hash));
+    document_release(&document);
   }
 }
 
@@ -156,37 +159,37 @@ static bool list_sort(const struct request *request, struct reply *reply,
 }
 
 static json_t *list_view(const struct service *service, struct job_record *records, size_t count,
-                         int64_t next) {
+                         const char *next) {
   json_t *jobs = json_array();
   for (size_t i = 0; i < count; i++) {
     json_array_append_new(jobs, job_view(service, &records[i], false));
     job_record_clear(&records[i]);
   }
   free(records);
-  json_t *cursor = next != 0 ? json_sprintf("%lld", (long long)next) : json_null();
-  return json_pack("{s:o, s:o}", "jobs", jobs, "next", cursor);
+  return json_pack("{s:o, s:s?}", "jobs", jobs, "next", next);
 }
 
 void jobs_list(struct request *request, struct reply *reply) {
-  struct list_query query = {.kind = url_query(&request->url, "kind")};
+  struct list_query query = {.kind = url_query(&request->url, "kind"),
+                             .cursor = url_query(&request->url, "cursor")};
   struct job_record *records;
-  struct error error;
+  struct error error = {.status = STATUS_OK};
   size_t count;
-  int64_t next, limit;
+  int64_t limit;
+  char *next;
   if (!list_states(request, reply, &query) || !list_labels(request, reply, &query) ||
       !list_sort(request, reply, &query) ||
-      !request_query_integer(request, reply, "cursor", 1, INT64_MAX, 0, &query.cursor) ||
       !request_query_integer(request, reply, "limit", 1, LIST_LIMIT_MAX, LIST_LIMIT, &limit)) {
     return;
   }
   query.limit = (int)limit;
   enum status status = store_list(request->service->store, &query, &records, &count, &next, &error);
-  if (status == STATUS_NOT_FOUND) {
-    reply_problem(reply, 400, "invalid_query",
-                  "The job of this cursor was deleted; start again without a cursor.");
+  if (status == STATUS_INVALID) {
+    reply_problem(reply, 400, "invalid_query", "%s", error.message);
   } else if (status != STATUS_OK) {
     reply_error(reply, &error);
   } else {
     reply_json(reply, 200, list_view(request->service, records, count, next));
+    free(next);
   }
 }

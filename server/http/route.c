@@ -19,6 +19,7 @@ static const struct route {
     {HTTP_POST, ROLE_SUBMIT, "api/v1/jobs", jobs_submit, ""},
     {HTTP_POST, ROLE_READ, "api/v1/jobs:validate", jobs_validate, ""},
     {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}", job_show, ""},
+    {HTTP_PATCH, ROLE_SUBMIT, "api/v1/jobs/{id}", job_patch, ""},
     {HTTP_DELETE, ROLE_ADMIN, "api/v1/jobs/{id}", job_delete, ""},
     {HTTP_POST, ROLE_SUBMIT, "api/v1/jobs/{id}/cancel", job_cancel, ""},
     {HTTP_POST, ROLE_SUBMIT, "api/v1/jobs/{id}/retry", job_retry, ""},
@@ -93,6 +94,11 @@ static bool route_match(const struct route *route, struct request *request) {
   return true;
 }
 
+static const char *const method_words[] = {[HTTP_GET] = "GET, HEAD",
+                                           [HTTP_POST] = "POST",
+                                           [HTTP_PATCH] = "PATCH",
+                                           [HTTP_DELETE] = "DELETE"};
+
 handler *route_find(struct request *request, struct reply *reply) {
   char allowed[40] = "";
   for (size_t i = 0; i < sizeof routes / sizeof *routes; i++) {
@@ -106,9 +112,7 @@ handler *route_find(struct request *request, struct reply *reply) {
       return routes[i].handle;
     }
     strcat(allowed, allowed[0] ? ", " : "");
-    strcat(allowed, routes[i].method == HTTP_GET    ? "GET, HEAD"
-                    : routes[i].method == HTTP_POST ? "POST"
-                                                    : "DELETE");
+    strcat(allowed, method_words[routes[i].method]);
   }
   if (!allowed[0] && page_exists(request)) {
     if (request->method == HTTP_GET) {

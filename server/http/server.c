@@ -134,6 +134,8 @@ static void exchange_open(struct exchange *exchange, const char *method, const c
     request->method = HTTP_GET;
   } else if (strcmp(method, "POST") == 0) {
     request->method = HTTP_POST;
+  } else if (strcmp(method, "PATCH") == 0) {
+    request->method = HTTP_PATCH;
   } else if (strcmp(method, "DELETE") == 0) {
     request->method = HTTP_DELETE;
   }

@@ -41,6 +41,7 @@ struct service {
   struct access *access;             /* who may come in */
   struct job_reader *reader;         /* checks job documents */
   const char *data;                  /* data directory */
+  uint64_t memory_limit_bytes;       /* of a worker, 0: none */
   int64_t started_ms;                /* on the monotonic clock */
   atomic_bool draining;              /* no new jobs */
   struct http_meter *meter;          /* counts of requests */
@@ -51,6 +52,7 @@ struct service {
 enum http_method {
   HTTP_GET = 1,
   HTTP_POST = 2,
+  HTTP_PATCH = 8,
   HTTP_DELETE = 4 /* bits, so that a set of them is a number */
 };
 

@@ -1,141 +1,188 @@
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "server/store/branch.h"
 #include "server/store/connection.h"
 #include "server/store/sql.h"
 
-/* The values of a job by which it is sorted; every one is unique together with the id. */
-static const char *const sort_expressions[] = {
-    [LIST_BY_ID] = "job.id",
-    [LIST_BY_CREATED] = "job.created_ms",
-    [LIST_BY_FINISHED] = "coalesce(job.finished_ms, 0)",
-    [LIST_BY_NAME] = "job.name",
-    [LIST_BY_STATE] = "job.state",
-};
+/* ---- cursors ----------------------------------------------------------------------------- */
+/* "ID", "ID-MILLISECONDS" in the order of ends, "ID-STATE", "ID-NAME" with the name in
+ * hexadecimal digits. */
 
-/* The text of the query: filters with ? for their values, the cursor, the order. */
-static char *list_sql(const struct list_query *query) {
+static char *cursor_write(const struct list_query *query, const struct place *place) {
   char *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
   if (!out) {
     return NULL;
   }
-  const char *key = sort_expressions[query->sort];
-  fprintf(out, "SELECT " JOB_COLUMNS " FROM job WHERE 1");
-  const char *between = " AND job.state IN (";
-  for (int i = 0; i < JOB_STATE_COUNT; i++) {
-    if (query->states[i]) {
-      fprintf(out, "%s'%s'", between, job_state_word((enum job_state)i));
-      between = ", ";
+  fprintf(out, "%lld", (long long)place->id);
+  if (query->sort == LIST_BY_FINISHED) {
+    fprintf(out, "-%lld", (long long)place->number);
+  } else if (query->sort == LIST_BY_STATE) {
+    fprintf(out, "-%s", place->text);
+  } else if (query->sort == LIST_BY_NAME) {
+    fputc('-', out);
+    for (const char *at = place->text; *at; at++) {
+      fprintf(out, "%02x", (unsigned)(unsigned char)*at);
     }
   }
-  if (between[0] == ',') {
-    fprintf(out, ")");
-  }
-  if (query->kind) {
-    fprintf(out, " AND job.kind = ?");
-  }
-  for (size_t i = 0; i < query->label_count; i++) {
-    fprintf(out, " AND EXISTS (SELECT 1 FROM job_label AS l WHERE l.job_id = job.id AND "
-                 "l.name = ? AND l.value = ?)");
-  }
-  if (query->cursor != 0 && query->sort == LIST_BY_ID) {
-    fprintf(out, " AND job.id %s ?", query->descending ? "<" : ">");
-  } else if (query->cursor != 0) {
-    fprintf(out, " AND (%s, job.id) %s (SELECT %s, job.id FROM job WHERE id = ?)", key,
-            query->descending ? "<" : ">", key);
-  }
-  const char *direction = query->descending ? "DESC" : "ASC";
-  fprintf(out, " ORDER BY %s %s, job.id %s LIMIT ?", key, direction, direction);
   if (fclose(out) != 0) {
     free(text);
-    return NULL;
+    text = NULL;
   }
   return text;
 }
 
-static enum status list_prepare(sqlite3 *db, const struct list_query *query,
-                                sqlite3_stmt **statement, struct error *error) {
-  char *sql = list_sql(query);
-  if (!sql) {
-    return error_set(error, STATUS_NO_MEMORY, NULL, "No memory for a query.");
+/* A whole number without sign at the start of the text; false when it is none. */
+static bool number_read(const char **text, int64_t *value) {
+  char *end;
+  if (**text < '0' || **text > '9') {
+    return false;
   }
-  enum status status = sql_prepare(db, statement, error, sql, "");
-  free(sql);
-  if (status != STATUS_OK) {
-    return status;
-  }
-  int parameter = 1;
-  if (query->kind) {
-    sqlite3_bind_text(*statement, parameter++, query->kind, -1, SQLITE_STATIC);
-  }
-  for (size_t i = 0; i < query->label_count; i++) {
-    sqlite3_bind_text(*statement, parameter++, query->labels[i].name, -1, SQLITE_STATIC);
-    sqlite3_bind_text(*statement, parameter++, query->labels[i].value, -1, SQLITE_STATIC);
-  }
-  if (query->cursor != 0) {
-    sqlite3_bind_int64(*statement, parameter++, query->cursor);
-  }
-  sqlite3_bind_int(*statement, parameter, query->limit + 1);
-  return STATUS_OK;
+  errno = 0;
+  *value = strtoll(*text, &end, 10);
+  *text = end;
+  return errno == 0;
 }
 
-/* Reads up to limit records; one row more tells that there is another page. */
-static enum status list_read(sqlite3 *db, sqlite3_stmt *statement, const struct list_query *query,
-                             struct job_record *records, size_t *count, int64_t *next,
-                             struct error *error) {
-  enum status status = STATUS_OK;
-  int row = 0;
-  while ((status = sql_step(statement, &row, error)) == STATUS_OK && row) {
-    if (*count == (size_t)query->limit) {
-      *next = records[*count - 1].id;
-      break;
-    }
-    status = store_record_read(db, statement, &records[*count], error);
-    if (status != STATUS_OK) {
-      break;
-    }
-    ++*count;
+/* The name in hexadecimal digits as malloc'd text; NULL when it is malformed, or without memory. */
+static char *name_read(const char *text) {
+  size_t length = strlen(text);
+  char *name = length % 2 == 0 && strspn(text, "0123456789abcdef") == length
+                   ? calloc(length / 2 + 1, 1)
+                   : NULL;
+  for (size_t i = 0; name && i < length / 2; i++) {
+    char digits[3] = {text[2 * i], text[2 * i + 1], 0};
+    name[i] = (char)strtol(digits, NULL, 16);
   }
+  return name;
+}
+
+/* Reads a cursor into *place, whose text is the caller's. */
+static bool cursor_read(const struct list_query *query, struct place *place) {
+  const char *rest = query->cursor;
+  enum job_state state;
+  *place = (struct place){0};
+  if (!number_read(&rest, &place->id) || place->id == 0) {
+    return false;
+  }
+  if (query->sort == LIST_BY_ID || query->sort == LIST_BY_CREATED) {
+    place->text = *rest == '\0' ? strdup("") : NULL;
+    return place->text != NULL;
+  }
+  if (*rest++ != '-') {
+    return false;
+  }
+  if (query->sort == LIST_BY_NAME) {
+    place->text = name_read(rest);
+  } else if (query->sort == LIST_BY_STATE) {
+    place->text = job_state_parse(rest, &state) ? strdup(rest) : NULL;
+  } else if (number_read(&rest, &place->number) && *rest == '\0') {
+    place->text = strdup("");
+  }
+  return place->text != NULL;
+}
+
+static enum status cursor_wrong(const struct list_query *query, struct error *error) {
+  return error_set(error, STATUS_INVALID, NULL,
+                   "cursor=%.60s is none of a list in this order: take \"next\" of the page before "
+                   "as it is, with the same sort.",
+                   query->cursor);
+}
+
+/* ---- a page ------------------------------------------------------------------------------ */
+
+static int ascending(const void *a, const void *b) {
+  return place_compare(a, b);
+}
+
+static int descending(const void *a, const void *b) {
+  return place_compare(b, a);
+}
+
+static enum status record_at(sqlite3 *db, int64_t id, struct job_record *record,
+                             struct error *error) {
+  sqlite3_stmt *statement;
+  int row = 0;
+  enum status status = sql_prepare(db, &statement, error,
+                                   "SELECT " JOB_COLUMNS " FROM job WHERE job.id = ?", "i", id);
+  if (status == STATUS_OK) {
+    status = sql_step(statement, &row, error);
+  }
+  if (status == STATUS_OK) {
+    status = row ? store_record_read(db, statement, record, error) : store_no_job(id, error);
+  }
+  sql_done(statement);
   return status;
 }
 
+/* Reads the first jobs of the places; one place more tells that there is another page. */
+static enum status page_read(sqlite3 *db, const struct list_query *query, struct places *places,
+                             struct job_record *records, size_t *count, char **next,
+                             struct error *error) {
+  size_t limit = (size_t)query->limit;
+  if (places->count > 1) {
+    qsort(places->list, places->count, sizeof *places->list,
+          query->descending ? descending : ascending);
+  }
+  while (*count < limit && *count < places->count) {
+    enum status status = record_at(db, places->list[*count].id, &records[*count], error);
+    if (status != STATUS_OK) {
+      return status;
+    }
+    ++*count;
+  }
+  if (places->count > limit) {
+    *next = cursor_write(query, &places->list[limit - 1]);
+    if (!*next) {
+      return error_set(error, STATUS_NO_MEMORY, NULL, "No memory for a cursor.");
+    }
+  }
+  return STATUS_OK;
+}
+
 enum status store_list(struct store *store, const struct list_query *query,
-                       struct job_record **records, size_t *count, int64_t *next,
+                       struct job_record **records, size_t *count, char **next,
                        struct error *error) {
-  sqlite3_stmt *statement = NULL;
+  struct places places = {0};
+  struct place after = {0};
+  sqlite3 *db = NULL;
   enum status status = STATUS_OK;
   *count = 0;
-  *next = 0;
+  *next = NULL;
+  *records = NULL;
+  if (query->cursor && !cursor_read(query, &after)) {
+    status = cursor_wrong(query, error);
+    goto done;
+  }
   *records = calloc((size_t)query->limit, sizeof **records);
-  sqlite3 *db = *records ? store_read_begin(store, error) : NULL;
+  db = *records ? store_read_begin(store, error) : NULL;
   if (!db) {
     status = STATUS_IO;
     goto done;
   }
-  if (query->cursor != 0 && query->sort != LIST_BY_ID) {
-    enum job_state state;
-    status = store_state_of(db, query->cursor, &state, error);
-  }
+  status = branches_collect(db, query, query->cursor ? &after : NULL, (size_t)query->limit + 1,
+                            &places, error);
   if (status == STATUS_OK) {
-    status = list_prepare(db, query, &statement, error);
-  }
-  if (status == STATUS_OK) {
-    status = list_read(db, statement, query, *records, count, next, error);
+    status = page_read(db, query, &places, *records, count, next, error);
   }
 done:
-  sqlite3_finalize(statement);
   if (db) {
     store_read_end(store, db);
   }
+  places_clear(&places);
+  free(after.text);
   if (status != STATUS_OK) {
     for (size_t i = 0; i < *count; i++) {
       job_record_clear(&(*records)[i]);
     }
     free(*records);
+    free(*next);
     *records = NULL;
+    *next = NULL;
     *count = 0;
   }
   return status;

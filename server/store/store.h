@@ -185,14 +185,17 @@ struct list_query {
   size_t label_count;
   enum { LIST_BY_ID, LIST_BY_CREATED, LIST_BY_FINISHED, LIST_BY_NAME, LIST_BY_STATE } sort;
   bool descending;
-  int64_t cursor; /* id of the last job of the page before, 0: first page */
-  int limit;      /* jobs a page, at least 1 */
+  const char *cursor; /* as the page before gave it, NULL: first page */
+  int limit;          /* jobs a page, at least 1 */
 };
 
-/* One page. *records: malloc'd array of *count, each to be cleared, then freed. *next: the cursor
- * of the next page, 0 when this is the last. STATUS_NOT_FOUND when the cursor's job is gone. */
+/* One page, in a time that depends neither on the number of jobs nor on the page. (With several
+ * labels the jobs are looked through that have the rarest of them.) *records: malloc'd array of
+ * *count, each to be cleared, then freed. *next: the cursor of the next page, malloc'd, NULL when
+ * this is the last: it stands for a place in the order, whatever becomes of the job there.
+ * STATUS_INVALID for a cursor that is none of this order. */
 enum status store_list(struct store *store, const struct list_query *query,
-                       struct job_record **records, size_t *count, int64_t *next,
+                       struct job_record **records, size_t *count, char **next,
                        struct error *error);
 
 /* The job document as submitted, malloc'd. STATUS_NOT_FOUND. */

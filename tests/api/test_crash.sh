@@ -32,7 +32,7 @@ check "internal error" "failed internal_error 3" "$(field '.state + " " + .reaso
 fetch POST /api/v1/jobs -H 'Prefer: wait=20' --data-binary "$(job '.name = "garbage"')"
 check "output that is no result" "failed result_invalid 3" "$(field '.state + " " + .reason_code') $(field .attempt)"
 fetch POST /api/v1/jobs -H 'Prefer: wait=30' --data-binary "$(job '.name = "hungry"')"
-check "a worker over its memory limit" "failed worker_failed" "$(field '.state + " " + .reason_code')"
+check "a worker over its memory limit is not tried again" "failed memory_limit 1" "$(field '.state + " " + .reason_code') $(field .attempt)"
 fetch POST /api/v1/jobs -H 'Prefer: wait=20' --data-binary "$(job '.name = "sleepy"')" &
 other=$!
 sleep 0.5

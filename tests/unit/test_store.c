@@ -232,20 +232,23 @@ START_TEST(pages_cover_every_job_once) {
   struct job_record *records;
   struct error error;
   size_t count;
-  int64_t seen = 0, pages = 0, next;
+  int64_t seen = 0, pages = 0;
+  char *next, *cursor = NULL;
   for (int i = 0; i < 10; i++) {
     submit();
   }
   do {
+    query.cursor = cursor;
     ck_assert_int_eq(store_list(store, &query, &records, &count, &next, &error), STATUS_OK);
     for (size_t i = 0; i < count; i++) {
       ck_assert_int_eq(records[i].id, ++seen);
       job_record_clear(&records[i]);
     }
     free(records);
+    free(cursor);
+    cursor = next;
     pages++;
-    query.cursor = next;
-  } while (next != 0);
+  } while (next);
   ck_assert_int_eq(seen, 10);
   ck_assert_int_eq(pages, 3);
 }

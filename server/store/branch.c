@@ -1,0 +1,280 @@
+#include "server/store/branch.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "server/store/sql.h"
+
+enum { SQL_SIZE = 4096, RARE = 1000 };
+
+/* Where a range begins. */
+enum start {
+  START_NOWHERE, /* all of it comes before the place */
+  START_FIRST,   /* all of it comes after the place */
+  START_ID,      /* after the place's id: the range is in the order of ids */
+  START_KEY      /* after the place's key and id */
+};
+
+/* What is the same for all ranges of a page. */
+struct branches {
+  sqlite3 *db;
+  const struct list_query *query;
+  const struct place *after;
+  size_t most;
+  size_t label;            /* index of the label that leads, if there is one */
+  sqlite3_stmt *cached[8]; /* by start and whether the range is in the order of ids */
+  struct places *places;
+};
+
+int place_compare(const struct place *a, const struct place *b) {
+  int order = strcmp(a->text, b->text);
+  if (order == 0) {
+    order = (a->number > b->number) - (a->number < b->number);
+  }
+  return order != 0 ? order : (a->id > b->id) - (a->id < b->id);
+}
+
+void places_clear(struct places *places) {
+  for (size_t i = 0; i < places->count; i++) {
+    free(places->list[i].text);
+  }
+  free(places->list);
+  *places = (struct places){0};
+}
+
+static enum status places_add(struct places *places, int64_t id, int64_t number, const char *text,
+                              struct error *error) {
+  if (places->count == places->room) {
+    size_t room = 2 * places->room + 64;
+    struct place *grown = realloc(places->list, room * sizeof *grown);
+    if (!grown) {
+      return error_set(error, STATUS_NO_MEMORY, NULL, "No memory for a list.");
+    }
+    places->list = grown;
+    places->room = room;
+  }
+  char *copy = strdup(text);
+  if (!copy) {
+    return error_set(error, STATUS_NO_MEMORY, NULL, "No memory for a list.");
+  }
+  places->list[places->count++] = (struct place){.id = id, .number = number, .text = copy};
+  return STATUS_OK;
+}
+
+/* ---- one range --------------------------------------------------------------------------- */
+
+/* Whether a range of the state is in the order of ids: where the order has nothing else, or the
+ * same for all of the state. */
+static bool by_id(const struct list_query *query, enum job_state state) {
+  return query->sort == LIST_BY_ID || query->sort == LIST_BY_CREATED ||
+         query->sort == LIST_BY_STATE ||
+         (query->sort == LIST_BY_FINISHED && !job_state_terminal(state));
+}
+
+static enum start range_start(const struct branches *all, enum job_state state) {
+  const struct place *after = all->after;
+  if (!after) {
+    return START_FIRST;
+  }
+  if (!by_id(all->query, state) && !(all->query->sort == LIST_BY_FINISHED && after->number == 0)) {
+    return START_KEY;
+  }
+  int order = 0; /* of the range against the place */
+  if (all->query->sort == LIST_BY_STATE) {
+    order = strcmp(job_state_word(state), after->text);
+  } else if (all->query->sort == LIST_BY_FINISHED) {
+    order = job_state_terminal(state) - (after->number != 0);
+  }
+  order = all->query->descending ? -order : order;
+  return order < 0 ? START_NOWHERE : order > 0 ? START_FIRST : START_ID;
+}
+
+/* The text of a range's query. Parameters: 1, 2 label and value, 3 kind, 4 state, 5 key and 6 id of
+ * the place, 7 how many; from 8 on the other labels. */
+static void range_sql(const struct branches *all, enum start start, bool ids, char sql[SQL_SIZE]) {
+  const struct list_query *query = all->query;
+  bool labels = query->label_count > 0, names = query->sort == LIST_BY_NAME;
+  const char *id = labels ? "job_id" : "id", *table = labels ? "job_label" : "job";
+  const char *key = names ? labels ? "job_name" : "name" : "finished_ms";
+  const char *sign = query->descending ? "<" : ">", *way = query->descending ? "DESC" : "ASC";
+  size_t used = 0;
+#define ADD(...) used += (size_t)snprintf(sql + used, SQL_SIZE - used, __VA_ARGS__)
+  ADD("SELECT %s, %s FROM %s AS j WHERE j.state = ?4", id, ids ? "0" : key, table);
+  if (labels) {
+    ADD(" AND j.name = ?1 AND j.value = ?2");
+  }
+  if (labels || query->kind) {
+    ADD(" AND j.kind = ?3");
+  }
+  if (start == START_ID) {
+    ADD(" AND j.%s %s ?6", id, sign);
+  } else if (start == START_KEY) {
+    ADD(" AND (j.%s, j.%s) %s (?5, ?6)", key, id, sign);
+  }
+  for (size_t i = 0, parameter = 8; i < query->label_count; i++) {
+    if (i != all->label) {
+      ADD(" AND EXISTS (SELECT 1 FROM job_label AS l WHERE l.job_id = j.job_id AND l.name = ?%zu "
+          "AND l.value = ?%zu)",
+          parameter, parameter + 1);
+      parameter += 2;
+    }
+  }
+  if (!ids) {
+    ADD(" ORDER BY j.%s %s, j.%s %s LIMIT ?7", key, way, id, way);
+  } else {
+    ADD(" ORDER BY j.%s %s LIMIT ?7", id, way);
+  }
+#undef ADD
+}
+
+static void range_bind(const struct branches *all, sqlite3_stmt *statement, const char *kind,
+                       enum job_state state) {
+  const struct list_query *query = all->query;
+  bool names = query->sort == LIST_BY_NAME;
+  int parameter = 8, count = sqlite3_bind_parameter_count(statement);
+  if (query->label_count > 0) {
+    sqlite3_bind_text(statement, 1, query->labels[all->label].name, -1, SQLITE_STATIC);
+    sqlite3_bind_text(statement, 2, query->labels[all->label].value, -1, SQLITE_STATIC);
+  }
+  sqlite3_bind_text(statement, 3, kind, -1, SQLITE_STATIC);
+  sqlite3_bind_text(statement, 4, job_state_word(state), -1, SQLITE_STATIC);
+  if (all->after && names) {
+    sqlite3_bind_text(statement, 5, all->after->text, -1, SQLITE_STATIC);
+  } else if (all->after) {
+    sqlite3_bind_int64(statement, 5, all->after->number);
+  }
+  sqlite3_bind_int64(statement, 6, all->after ? all->after->id : 0);
+  sqlite3_bind_int64(statement, 7, (int64_t)all->most);
+  for (size_t i = 0; i < query->label_count && parameter + 1 <= count; i++) {
+    if (i != all->label) {
+      sqlite3_bind_text(statement, parameter++, query->labels[i].name, -1, SQLITE_STATIC);
+      sqlite3_bind_text(statement, parameter++, query->labels[i].value, -1, SQLITE_STATIC);
+    }
+  }
+}
+
+static enum status range_collect(struct branches *all, const char *kind, enum job_state state,
+                                 struct error *error) {
+  bool ids = by_id(all->query, state), names = all->query->sort == LIST_BY_NAME;
+  enum start start = range_start(all, state);
+  if (start == START_NOWHERE) {
+    return STATUS_OK;
+  }
+  sqlite3_stmt **statement = &all->cached[2 * start + ids];
+  enum status status = STATUS_OK;
+  if (!*statement) {
+    char sql[SQL_SIZE];
+    range_sql(all, start, ids, sql);
+    status = sql_prepare(all->db, statement, error, sql, "");
+  }
+  if (status != STATUS_OK) {
+    return status;
+  }
+  int row = 0;
+  const char *word = all->query->sort == LIST_BY_STATE ? job_state_word(state) : "";
+  range_bind(all, *statement, kind, state);
+  while ((status = sql_step(*statement, &row, error)) == STATUS_OK && row) {
+    status = places_add(all->places, sqlite3_column_int64(*statement, 0),
+                        names ? 0 : sqlite3_column_int64(*statement, 1),
+                        names ? sql_text(*statement, 1) : word, error);
+    if (status != STATUS_OK) {
+      break;
+    }
+  }
+  sql_done(*statement);
+  return status;
+}
+
+/* All states that the query asks for. */
+static enum status states_collect(struct branches *all, const char *kind, struct error *error) {
+  bool any = true;
+  for (int i = 0; i < JOB_STATE_COUNT; i++) {
+    any = any && !all->query->states[i];
+  }
+  enum status status = STATUS_OK;
+  for (int i = 0; i < JOB_STATE_COUNT && status == STATUS_OK; i++) {
+    if (any || all->query->states[i]) {
+      status = range_collect(all, kind, (enum job_state)i, error);
+    }
+  }
+  return status;
+}
+
+/* ---- labels ------------------------------------------------------------------------------ */
+
+/* Lets the rarest label lead: counted up to where it does not matter any more. */
+static enum status label_choose(struct branches *all, struct error *error) {
+  const struct list_query *query = all->query;
+  int64_t least = INT64_MAX;
+  for (size_t i = 0; query->label_count > 1 && i < query->label_count; i++) {
+    sqlite3_stmt *statement;
+    int row = 0;
+    enum status status =
+        sql_prepare(all->db, &statement, error,
+                    "SELECT count(*) FROM (SELECT 1 FROM job_label WHERE name = ? AND value = ? "
+                    "LIMIT ?)",
+                    "tti", query->labels[i].name, query->labels[i].value, (int64_t)RARE);
+    if (status == STATUS_OK) {
+      status = sql_step(statement, &row, error);
+    }
+    if (status == STATUS_OK && sqlite3_column_int64(statement, 0) < least) {
+      least = sqlite3_column_int64(statement, 0);
+      all->label = i;
+    }
+    sql_done(statement);
+    if (status != STATUS_OK) {
+      return status;
+    }
+  }
+  return STATUS_OK;
+}
+
+/* Goes through the kinds that jobs with the label have: each is found by one step in the index. */
+static enum status kinds_collect(struct branches *all, struct error *error) {
+  char kind[64] = "";
+  for (;;) {
+    sqlite3_stmt *statement;
+    int row = 0;
+    enum status status = sql_prepare(
+        all->db, &statement, error,
+        "SELECT min(kind) FROM job_label WHERE name = ? AND value = ? AND kind > ?", "ttt",
+        all->query->labels[all->label].name, all->query->labels[all->label].value, kind);
+    if (status == STATUS_OK) {
+      status = sql_step(statement, &row, error);
+    }
+    char next[sizeof kind] = "";
+    if (status == STATUS_OK) {
+      snprintf(next, sizeof next, "%s", sql_text(statement, 0));
+    }
+    sql_done(statement);
+    if (status != STATUS_OK || strcmp(next, kind) <= 0) {
+      return status;
+    }
+    memcpy(kind, next, sizeof kind);
+    status = states_collect(all, kind, error);
+    if (status != STATUS_OK) {
+      return status;
+    }
+  }
+}
+
+/* ---- all of them ------------------------------------------------------------------------- */
+
+enum status branches_collect(sqlite3 *db, const struct list_query *query, const struct place *after,
+                             size_t most, struct places *places, struct error *error) {
+  struct branches all = {.db = db, .query = query, .after = after, .most = most, .places = places};
+  enum status status = STATUS_OK;
+  if (query->label_count > 0) {
+    status = label_choose(&all, error);
+  }
+  if (status == STATUS_OK && query->label_count > 0 && !query->kind) {
+    status = kinds_collect(&all, error);
+  } else if (status == STATUS_OK) {
+    status = states_collect(&all, query->kind, error);
+  }
+  for (size_t i = 0; i < sizeof all.cached / sizeof *all.cached; i++) {
+    sqlite3_finalize(all.cached[i]);
+  }
+  return status;
+}
