@@ -11,16 +11,16 @@ static enum status patch_known(const json_t *patch, struct error *error) {
   json_t *value;
   if (!json_is_object(patch)) {
     return error_set(error, STATUS_INVALID, "",
-                     "expected an object, for example {\"priority\": 10, \"labels\": {\"todo\": "
-                     "null}}");
+                     "the body is no object\nan object of name, labels and priority\n"
+                     "{\"priority\": 10, \"labels\": {\"todo\": null}}");
   }
   json_object_foreach((json_t *)patch, key, value) {
     if (strcmp(key, "name") != 0 && strcmp(key, "labels") != 0 && strcmp(key, "priority") != 0) {
       struct json_pointer pointer = {.length = 0};
       json_pointer_key(&pointer, key);
       return error_set(error, STATUS_INVALID, pointer.text,
-                       "\"%.60s\" of a job cannot be changed; what can be are name, labels and "
-                       "priority",
+                       "\"%.60s\" of a job cannot be changed\nname, labels and priority\n"
+                       "{\"priority\": 10}",
                        key);
     }
   }

@@ -25,18 +25,21 @@ static enum status reason_read(const struct request *request, json_t **body, con
   }
   if (!json_is_object(*body)) {
     return error_set(error, STATUS_INVALID, "",
-                     "expected an object, for example {\"reason\": \"more memory\"}, or no body");
+                     "the body is no object\nan object or no body\n{\"reason\": \"more memory\"}");
   }
   json_object_foreach(*body, key, value) {
     struct json_pointer pointer = {.length = 0};
     json_pointer_key(&pointer, key);
     if (strcmp(key, "reason") != 0) {
       status = error_set(error, STATUS_INVALID, pointer.text,
-                         "the key \"%.60s\" is not known here; known is \"reason\"", key);
+                         "the key \"%.60s\" is not known here\nreason\n{\"reason\": \"more "
+                         "memory\"}",
+                         key);
     } else if (!json_is_string(value) || json_string_length(value) > REASON_MAX) {
-      status =
-          error_set(error, STATUS_INVALID, pointer.text,
-                    "expected a text of at most %d bytes, for example \"more memory\"", REASON_MAX);
+      status = error_set(error, STATUS_INVALID, pointer.text,
+                         "the reason is no text, or too long\na text of at most %d bytes\n\"more "
+                         "memory\"",
+                         REASON_MAX);
     } else {
       *reason = json_string_value(value);
     }

@@ -11,9 +11,8 @@ static enum status memory_check(const struct service *service, const struct job_
     return STATUS_OK;
   }
   return error_set(error, STATUS_INVALID, "/memory",
-                   "the limit of %.6g MB is beyond that of this daemon: write at most \"%.0f MB\", "
-                   "or leave it away",
-                   spec->memory_bytes / 1e6, floor(most / 1e6));
+                   "%.6g MB is more than this daemon gives a worker\nat most %.0f MB\n\"%.0f MB\"",
+                   spec->memory_bytes / 1e6, floor(most / 1e6), floor(most / 1e6));
 }
 
 enum status document_read(const struct request *request, const char *text, size_t size,
