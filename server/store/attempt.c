@@ -133,14 +133,15 @@ static const char *end_word(enum attempt_end end, enum job_state after) {
 
 static enum status attempt_close(sqlite3 *db, const struct attempt_outcome *outcome,
                                  enum job_state state, int64_t now, struct error *error) {
+  bool cancelled = state == JOB_STATE_CANCELLED;
   return sql_run(db, error,
                  "UPDATE attempt SET outcome = ?, reason_code = ?, message = ?, "
                  "exit_code = iif(? < 0, NULL, ?), signal = nullif(?, 0), finished_ms = ?, "
                  "cpu_s = ?, peak_memory_MB = ? WHERE job_id = ? AND number = ?",
-                 "tttiiiiddii", end_word(outcome->end, state), outcome->reason_code,
-                 outcome->message, (int64_t)outcome->exit_code, (int64_t)outcome->exit_code,
-                 (int64_t)outcome->signal, now, outcome->cpu_s, outcome->peak_memory_MB,
-                 outcome->job_id, outcome->attempt);
+                 "tttiiiiddii", end_word(outcome->end, state),
+                 cancelled ? "cancel_requested" : outcome->reason_code, outcome->message,
+                 (int64_t)outcome->exit_code, (int64_t)outcome->exit_code, (int64_t)outcome->signal,
+                 now, outcome->cpu_s, outcome->peak_memory_MB, outcome->job_id, outcome->attempt);
 }
 
 /* The version of the solver that made the result, "" without one. */

@@ -159,9 +159,13 @@ enum status store_list(struct store *store, const struct list_query *query,
     goto done;
   }
   *records = calloc((size_t)query->limit, sizeof **records);
-  db = *records ? store_read_begin(store, error) : NULL;
+  if (!*records) {
+    status = error_set(error, STATUS_NO_MEMORY, NULL, "No memory for a list.");
+    goto done;
+  }
+  db = store_read_begin(store, error);
   if (!db) {
-    status = STATUS_IO;
+    status = error ? error->status : STATUS_IO;
     goto done;
   }
   status = branches_collect(db, query, query->cursor ? &after : NULL, (size_t)query->limit + 1,

@@ -174,9 +174,7 @@ enum status store_files_removed(struct store *store, int64_t job_id, int64_t *re
   int row = 0;
   enum status status = sql_prepare(
       db, &statement, error,
-      "SELECT coalesce(owner.files_removed_ms, 0), owner.files_removed_why FROM job "
-      "JOIN job AS owner ON owner.id = coalesce(job.reused_from, job.id) WHERE job.id = ?",
-      "i", job_id);
+      "SELECT coalesce(files_removed_ms, 0), files_removed_why FROM job WHERE id = ?", "i", job_id);
   if (status == STATUS_OK) {
     status = sql_step(statement, &row, error);
   }

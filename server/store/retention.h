@@ -36,8 +36,8 @@ enum status store_files_kept(struct store *store, int64_t job_id, int64_t attemp
                              struct error *error);
 
 /* When and why ("age", "size") the files that a job's result refers to were removed; *removed_ms is
- * 0 when they were not. Those of a job that was answered with another one's result are the other
- * one's. why: room for 8 bytes. STATUS_NOT_FOUND. */
+ * 0 when they were not. A job that was answered with another one's result has files of its own.
+ * why: room for 8 bytes. STATUS_NOT_FOUND. */
 enum status store_files_removed(struct store *store, int64_t job_id, int64_t *removed_ms,
                                 char why[8], struct error *error);
 

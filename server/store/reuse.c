@@ -31,6 +31,7 @@ static enum status answer_find(sqlite3 *db, int64_t id, struct answer *answer,
                   "asker.attempt + 1 FROM job AS asker JOIN job ON job.spec_hash = asker.spec_hash "
                   "JOIN result ON result.job_id = job.id "
                   "WHERE asker.id = ? AND job.state = 'succeeded' AND job.solver_version = ? "
+                  "AND job.files_removed_ms IS NULL "
                   "ORDER BY job.id DESC LIMIT 1",
                   "it", id, PNEULAB_VERSION);
   if (status == STATUS_OK) {
