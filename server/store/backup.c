@@ -141,8 +141,8 @@ static enum status database_move_aside(const char *directory, struct error *erro
       status = path_join(to, directory, "replaced-", database_files[i], error);
     }
     if (status == STATUS_OK && rename(from, to) != 0 && errno != ENOENT) {
-      status =
-          error_set(error, STATUS_IO, NULL, "Cannot rename %s: %s.", from, strerrordesc_np(errno));
+      status = error_set(error, STATUS_IO, NULL, "Cannot rename %s: %s.", from,
+                         strerrordesc_np(errno));
     }
   }
   return status;
@@ -189,8 +189,8 @@ enum status store_verify(const char *directory, struct error *error) {
   sqlite3_stmt *statement = NULL;
   int row = 0;
   if (status == STATUS_OK) {
-    status =
-        sql_prepare(db, &statement, error, "SELECT \"table\" FROM pragma_foreign_key_check", "");
+    status = sql_prepare(db, &statement, error, "SELECT \"table\" FROM pragma_foreign_key_check",
+                         "");
   }
   if (status == STATUS_OK) {
     status = sql_step(statement, &row, error);

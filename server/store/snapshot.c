@@ -47,7 +47,8 @@ static enum status file_settle(const char *path, struct error *error) {
   if (fd >= 0) {
     close(fd);
   }
-  return settled ? STATUS_OK : error_set(error, STATUS_IO, NULL, "Cannot write the copy %s.", path);
+  return settled ? STATUS_OK
+                 : error_set(error, STATUS_IO, NULL, "Cannot write the copy %s.", path);
 }
 
 enum status snapshot_copy(sqlite3 *db, const char *path, snapshot_stop *stop, void *context,

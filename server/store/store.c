@@ -90,9 +90,9 @@ enum status store_open(const char *directory, struct store **store, struct error
     status = writer_open(path, &opened->writer, error);
   }
   for (int i = 0; i < STORE_READERS && status == STATUS_OK; i++) {
-    status =
-        store_connect(path, SQLITE_OPEN_READWRITE, "PRAGMA query_only = ON; PRAGMA mmap_size = 0;",
-                      &opened->readers[i], error);
+    status = store_connect(path, SQLITE_OPEN_READWRITE,
+                           "PRAGMA query_only = ON; PRAGMA mmap_size = 0;", &opened->readers[i],
+                           error);
   }
   if (status != STATUS_OK) {
     store_close(opened);
