@@ -61,7 +61,7 @@ not_allowed() {
   check "$1 $2" "405 method_not_allowed $3" "$CODE $(field .code) $(header Allow)"
 }
 not_allowed PUT /api/v1/jobs "GET, HEAD, POST"
-not_allowed PATCH /api/v1/jobs/1 "GET, HEAD, DELETE"
+not_allowed PUT /api/v1/jobs/1 "GET, HEAD, PATCH, DELETE"
 not_allowed GET /api/v1/jobs/1/cancel POST
 not_allowed DELETE /healthz "GET, HEAD"
 not_allowed POST / "GET, HEAD"
