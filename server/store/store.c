@@ -61,7 +61,15 @@ static enum status writer_open(const char *path, sqlite3 **writer, struct error 
       status = sql_fail(*writer, error);
     }
   }
-  return status == STATUS_OK ? store_migrate(*writer, error) : status;
+  if (status == STATUS_OK) {
+    status = store_migrate(*writer, error);
+  }
+  /* From now on transactions are small: what undoes a part of one needs no file of its own. */
+  if (status == STATUS_OK &&
+      sqlite3_exec(*writer, "PRAGMA temp_store = MEMORY", NULL, NULL, NULL) != SQLITE_OK) {
+    status = sql_fail(*writer, error);
+  }
+  return status;
 }
 
 enum status store_open(const char *directory, struct store **store, struct error *error) {
@@ -90,9 +98,9 @@ enum status store_open(const char *directory, struct store **store, struct error
     status = writer_open(path, &opened->writer, error);
   }
   for (int i = 0; i < STORE_READERS && status == STATUS_OK; i++) {
-    status = store_connect(path, SQLITE_OPEN_READWRITE,
-                           "PRAGMA query_only = ON; PRAGMA mmap_size = 0;", &opened->readers[i],
-                           error);
+    status =
+        store_connect(path, SQLITE_OPEN_READWRITE, "PRAGMA query_only = ON; PRAGMA mmap_size = 0;",
+                      &opened->readers[i], error);
   }
   if (status != STATUS_OK) {
     store_close(opened);
