@@ -15,11 +15,13 @@ struct bucket {
   char party[80];  /* "" when unused */
   double level;    /* what may be taken now */
   int64_t seen_ms; /* when `level` was true */
+  uint64_t turn;   /* of its last use among all uses: many come in one millisecond */
 };
 
 struct limiter {
   pthread_mutex_t mutex;
   double rate_hz, burst;
+  uint64_t turns;
   struct bucket buckets[SETS][WAYS];
 };
 
@@ -57,7 +59,7 @@ static struct bucket *bucket_find(struct limiter *limiter, const char *party, in
     if (strcmp(set[i].party, party) == 0) {
       return &set[i];
     }
-    oldest = set[i].seen_ms < oldest->seen_ms ? &set[i] : oldest;
+    oldest = set[i].turn < oldest->turn ? &set[i] : oldest;
   }
   *oldest = (struct bucket){.level = limiter->burst, .seen_ms = now};
   strncpy(oldest->party, party, sizeof oldest->party - 1);
@@ -75,6 +77,7 @@ bool limiter_take(struct limiter *limiter, const char *party, double *wait_s) {
   double gained = limiter->rate_hz * (double)(now - bucket->seen_ms) / 1000;
   bucket->level = fmin(bucket->level + gained, limiter->burst);
   bucket->seen_ms = now;
+  bucket->turn = ++limiter->turns;
   bool may = bucket->level >= 1;
   if (may) {
     bucket->level -= 1;
