@@ -150,7 +150,10 @@ void connections_expire(struct connections *connections) {
     if (at->ended || !connection_is_late(connections, at, now)) {
       continue;
     }
-    if (at->phase != CONNECTION_ANSWER && !at->tls) {
+    if (at->phase == CONNECTION_ANSWER) { /* the system need not keep what nobody takes */
+      struct linger none = {.l_onoff = 1, .l_linger = 0};
+      setsockopt(at->socket, SOL_SOCKET, SO_LINGER, &none, sizeof none);
+    } else if (!at->tls) {
       send(at->socket, late, sizeof late - 1, MSG_DONTWAIT | MSG_NOSIGNAL);
     }
     shutdown(at->socket, SHUT_RDWR);
