@@ -6,6 +6,9 @@
 #include "server/http/handlers.h"
 #include "server/http/job_view.h"
 #include "server/http/waiters.h"
+#include "server/store/retention.h"
+#include "solver/job/json.h"
+#include "solver/job/spec.h"
 
 void job_show(struct request *request, struct reply *reply) {
   int64_t id;
@@ -47,12 +50,15 @@ void job_delete(struct request *request, struct reply *reply) {
     return;
   }
   int64_t attempts = record.attempt;
+  bool kept = true;
   job_record_clear(&record);
   if (store_delete(service->store, id, &error) != STATUS_OK) {
     reply_error(reply, &error);
     return;
   }
-  janitor_remove_files(service->data, id, attempts);
+  if (store_files_kept(service->store, id, attempts, &kept, NULL) == STATUS_OK && !kept) {
+    janitor_remove_files(service->data, id, attempts);
+  }
   reply->status = 204;
 }
 

@@ -150,10 +150,12 @@ enum status store_files_kept(struct store *store, int64_t job_id, int64_t attemp
   }
   sqlite3_stmt *statement;
   int row = 0;
-  enum status status =
-      sql_prepare(db, &statement, error,
-                  "SELECT 1 FROM job WHERE id = ? AND attempt >= ? AND files_removed_ms IS NULL",
-                  "ii", job_id, attempt);
+  enum status status = sql_prepare(
+      db, &statement, error,
+      "SELECT 1 FROM job WHERE id = ? AND attempt >= ? AND files_removed_ms IS NULL UNION ALL "
+      "SELECT 1 FROM job WHERE reused_from = ? AND files_removed_ms IS NULL AND NOT EXISTS "
+      "(SELECT 1 FROM job WHERE id = ?) LIMIT 1",
+      "iiii", job_id, attempt, job_id, job_id);
   if (status == STATUS_OK) {
     status = sql_step(statement, &row, error);
     sql_done(statement);

@@ -31,7 +31,8 @@ enum status store_files_expire(struct store *store, const struct retention *limi
                                struct error *error);
 
 /* Whether files of this attempt are to be there: *kept is false when the job or the attempt does
- * not exist, or its files were marked as removed. */
+ * not exist, or its files were marked as removed. Files of a deleted job stay for the jobs that
+ * were answered with its result. */
 enum status store_files_kept(struct store *store, int64_t job_id, int64_t attempt, bool *kept,
                              struct error *error);
 

@@ -130,10 +130,9 @@ check "its log" 410 "$CODE"
 fetch GET /api/v1/jobs/3/result
 check "the result stays" "200 64.25" "$CODE $(field .metrics.bending_angle_deg)"
 check "folders" notes "$(ls "$DATA/attempts")"
-for _ in 1 2 3 4; do submit "$(job)" -H 'Prefer: wait=20' > /dev/null; done
 stop_daemon TERM
 start_daemon --workers 1 --solver "$SOLVER" --keep-files-size 1
-sleep 0.5
+for _ in 1 2 3 4; do submit "$(job)" -H 'Prefer: wait=20' > /dev/null; done
 check "small enough" 200 "$(curl -s -o /dev/null -w '%{http_code}' "$URL/api/v1/jobs/4/log")"
 stop_daemon TERM
 for id in 4 5 6 7; do head -c 400000 /dev/zero > "$DATA/attempts/$id-1/out/big"; done
