@@ -12,8 +12,9 @@
 
 #include "server/base/clock.h"
 
-/* A reader has to take this much in this time while something waits to be taken. */
-enum { READER_WINDOW_MS = 20000, READER_LEAST_BYTES = 20000, READER_CHECK_MS = 1000 };
+/* A reader has to take this much in this time while something waits to be taken. The time is less
+ * than that after which libmicrohttpd gives up, which leaves the rest to the system for minutes. */
+enum { READER_WINDOW_MS = 12000, READER_LEAST_BYTES = 12000, READER_CHECK_MS = 1000 };
 
 struct connection {
   struct connection *next, *previous;

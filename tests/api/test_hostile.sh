@@ -14,6 +14,7 @@ ln -s /etc/passwd passwd.csv
 : > ./-rf
 mkfifo pipe.json
 mkdir folder.json
+truncate -s 20M large.inp
 echo secret > ../outside.csv
 case $(jq -r .name "$job") in
   moved) rm -rf ../out; mkdir ../elsewhere; echo moved > ../elsewhere/page.html; ln -s elsewhere ../out ;;
@@ -24,7 +25,7 @@ cat <<DOC
 {"status":"succeeded","reason":"","message":"x\u001b[2J\n2026-01-01T00:00:00.000Z forged","kind":"response",
  "name":"n","metrics":{"bending_angle_deg":1},
  "samples":[{"pressure_kPa":0,"=cmd|/c calc":"+1","note":"@SUM(A1)"}],"midlines":[],"warnings":["<b>w</b>"],
- "artifacts":["page.html","drawing.svg","field.vtu","report.pdf","linked.csv","passwd.csv","pipe.json",
+ "artifacts":["page.html","large.inp","drawing.svg","field.vtu","report.pdf","linked.csv","passwd.csv","pipe.json",
  "folder.json","../outside.csv","..","/etc/passwd","a/b","page html","-rf","surface.json"],
  "statistics":{},"provenance":{"version":"0.1.0","spec_hash":""}}
 DOC
@@ -34,9 +35,14 @@ name='</title><script>alert(1)</script><img src=x onerror=alert(1)>=1+1'
 id=$(submit "$(job ".name = \"$name\" | .labels.x = \"<svg onload=alert(1)>\"")")
 check "it ends" succeeded "$(wait_state "$id" 'succeeded|failed')"
 
+# One that asks for much and takes nothing of it.
+exec 5<> "/dev/tcp/127.0.0.1/$PORT"
+printf 'GET /api/v1/jobs/%s/artifacts/large.inp HTTP/1.1\r\nHost: localhost\r\n\r\n' "$id" >&5
+asked=$SECONDS
+
 # Files: only plain names of regular files of its folder, saved and never shown.
 fetch GET "/api/v1/jobs/$id"
-check "files that are listed" "-rf drawing.svg field.vtu page.html report.pdf" \
+check "files that are listed" "-rf drawing.svg field.vtu large.inp page.html report.pdf" \
   "$(field '[.links.artifacts[] | sub(".*/"; "")] | sort | join(" ")')"
 for file in page.html drawing.svg field.vtu report.pdf; do
   fetch GET "/api/v1/jobs/$id/artifacts/$file"
@@ -87,4 +93,14 @@ for path in '/api/v1/jobs?label.x=%0d%0aSet-Cookie:%20a=b' '/api/v1/jobs/%0d%0aX
 done
 fetch GET '/api/v1/jobs?state=<script>alert(1)</script>'
 check "markup in a refusal" "400 application/problem+json" "$CODE $(header Content-Type)"
+# open_connections: how many there are beside the one that asks.
+open_connections() {
+  curl -s "$URL/metrics" | awk '/^pneulab_http_connections / { print $2 - 1 }'
+}
+while [ "$(open_connections)" != 0 ] && [ $((SECONDS - asked)) -lt 25 ]; do
+  sleep 0.5
+done
+check "who takes nothing of an answer is cut off" 0 "$(open_connections)"
+check "after its time" true "$([ $((SECONDS - asked)) -ge 11 ] && echo true)"
+exec 5>&-
 finish
