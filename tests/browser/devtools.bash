@@ -6,7 +6,7 @@
 # page METHOD [PARAMS]  calls a method on the page and prints its result
 # page_open URL         goes to an address
 # page_eval EXPRESSION  prints the value of a JavaScript expression as JSON
-# page_wait EXPRESSION  waits until it is true, at most WAIT_S seconds
+# page_wait EXPRESSION  waits until it, or what it promises, is true, at most WAIT_S seconds
 # page_errors           prints what the page has complained about, one JSON a line
 # page_screenshot FILE  writes the whole page as PNG
 
@@ -91,7 +91,7 @@ page_eval() {
 
 page_wait() {
   local end=$((SECONDS + WAIT_S))
-  until [ "$(page_eval "Boolean($1)")" = true ]; do
+  until [ "$(page_eval "Promise.resolve($1).then(Boolean)")" = true ]; do
     if [ "$SECONDS" -ge "$end" ]; then
       echo "waited in vain for: $1" >&2
       return 1

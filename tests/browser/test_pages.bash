@@ -201,8 +201,41 @@ test_cancel() {
   : > "$browser_events"
 }
 
+# The pages about the API and the formats: whole, without scripts, of this server alone.
+test_docs() {
+  local path
+  for path in /docs /docs/job /docs/result; do
+    page_open "$base$path"
+    expect "$path links to places that are there" '[...document.querySelectorAll("a[href^=\"#\"]")].every(
+      (link) => document.getElementById(link.getAttribute("href").slice(1)))'
+    expect "$path has no script" 'document.scripts.length === 0'
+    expect "$path has its styles" 'getComputedStyle(document.querySelector(".docs")).display === "grid"'
+    expect "$path is of this server alone" 'performance.getEntriesByType("resource").every(
+      (entry) => new URL(entry.name).origin === location.origin)'
+    expect "$path names no id twice" '(() => {
+      const ids = [...document.querySelectorAll("[id]")].map((element) => element.id);
+      return new Set(ids).size === ids.length;
+    })()'
+    expect_no_errors "$path complains about nothing"
+  done
+  page_open "$base/docs"
+  expect "every operation is there" 'fetch("/openapi.json").then((answer) => answer.json()).then((api) => {
+    const ids = Object.values(api.paths).flatMap((item) => Object.values(item))
+      .map((operation) => operation.operationId).filter(Boolean);
+    return ids.length > 25 && ids.every((id) => document.getElementById(id.toLowerCase()));
+  })'
+  page_open "$base/docs/job"
+  expect "every key of a response is there" 'fetch("/api/v1/schemas/job").then((answer) => answer.json()).then(
+    (schema) => {
+      const shown = new Set([...document.querySelectorAll("#response th code")].map((code) => code.textContent));
+      return Object.keys(schema.$defs.response.properties).every((key) => shown.has(key));
+    })'
+  page_open "$base/"
+  expect "the list links to the pages about the API" 'document.querySelector("nav a[href=\"/docs\"]")'
+}
+
 test_narrow() {
-  local size mode
+  local size mode page
   for mode in light dark; do
     for size in '1280 900' '390 844'; do
       # shellcheck disable=SC2086
@@ -216,6 +249,11 @@ test_narrow() {
         && document.documentElement.scrollWidth <= window.innerWidth'
       page_wait '[...document.images].every((image) => image.complete)'
       shot "job-${size% *}-$mode"
+      for page in '' /job; do
+        page_open "$base/docs$page"
+        expect "docs$page fits ($size, $mode)" 'document.documentElement.scrollWidth <= window.innerWidth'
+        shot "docs${page#/}-${size% *}-$mode"
+      done
     done
   done
   expect_no_errors "no size complains about anything"
@@ -234,6 +272,7 @@ test_compare
 test_submit
 test_job
 test_cancel
+test_docs
 test_narrow
 echo "$failures failures"
 [ "$failures" -eq 0 ]
