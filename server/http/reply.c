@@ -30,10 +30,14 @@ void reply_clear(struct reply *reply) {
 }
 
 void reply_header(struct reply *reply, const char *name, const char *format, ...) {
-  if (reply->header_count == REPLY_HEADERS_MAX) {
+  size_t at = 0;
+  while (at < reply->header_count && strcmp(reply->headers[at].name, name) != 0) {
+    at++;
+  }
+  if (at == REPLY_HEADERS_MAX) {
     return;
   }
-  size_t at = reply->header_count++;
+  reply->header_count += at == reply->header_count;
   reply->headers[at].name = name;
   va_list arguments;
   va_start(arguments, format);

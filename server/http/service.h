@@ -118,7 +118,7 @@ struct reply {
 void reply_init(struct reply *reply);
 void reply_clear(struct reply *reply);
 
-/* Adds a header; the value is cut at its field's size. */
+/* Sets a header, once each; the value is cut at its field's size. */
 void reply_header(struct reply *reply, const char *name, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
