@@ -13,6 +13,14 @@ head -c 2097152 /dev/zero | tr '\0' ' ' > "$WORK/big"
 fetch POST /api/v1/jobs:validate --data-binary "@$WORK/big"
 check "2 MiB to check" "413 too_large" "$CODE $(field .code)"
 
+for path in /sign-in /sign-out; do
+  fetch POST $path --data-binary "@$WORK/big"
+  check "2 MiB for $path" "413 too_large" "$CODE $(field .code)"
+done
+
+fetch GET '/sign-in?next=/jobs/1'
+check "the form that leads to a job" 200 "$CODE"
+
 fetch POST "/api/v1/jobs/$id/retry"
 check "run again" "202 $id" "$CODE $(field .retry_of)"
 check_match "where the new job is" '^/api/v1/jobs/[0-9]+$' "$(header Location)"
@@ -46,4 +54,13 @@ for attempt in 0 2 x; do
 done
 fetch GET "/api/v1/plots/overlay.png?jobs=$id,$again&width=400&height=320"
 check "a small overlay" "200 image/png" "$CODE $(header Content-Type)"
+
+# No room is left on the disk, by what has to stay free of it.
+stop_daemon TERM
+start_daemon --workers 1 --disk-reserve 1e7
+fetch POST /api/v1/jobs --data-binary "$(job)"
+check "no room for a job" "507 no_space" "$CODE $(field .code)"
+check_match "when to try again" '^[1-9][0-9]*$' "$(header Retry-After)"
+fetch GET "/api/v1/jobs/$id/result"
+check "what is there can be read" 200 "$CODE"
 finish

@@ -9,10 +9,10 @@ wait_state "$id" succeeded > /dev/null
 for path in "/api/v1/jobs/$id/document" "/api/v1/jobs/$id/result" "/api/v1/jobs/$id/samples.csv" \
   "/api/v1/jobs/$id/artifacts/surface.json" "/api/v1/jobs/$id/plots/angle.png" \
   "/api/v1/plots/overlay.png?jobs=$id" /api/v1/schemas/job /api/v1/schemas/result /openapi.json \
-  /openapi.yaml / /static/style.css; do
+  /openapi.yaml / /docs /sign-in /static/style.css; do
   fetch GET "$path"
   check_match "GET $path has a tag" '^"[^"]+"$' "$(header ETag)"
-  case $path in / | /static/*) control=no-cache ;; *) control="private, no-cache" ;; esac
+  case $path in / | /docs | /sign-in | /static/*) control=no-cache ;; *) control="private, no-cache" ;; esac
   check "GET $path is asked for anew" "$control" "$(header Cache-Control)"
   etag=$(header ETag)
   fetch GET "$path" -H "If-None-Match: $etag"
@@ -72,6 +72,8 @@ GET /api/v1/compare
 GET /api/v1/database
 GET /api/v1/materials
 GET /api/v1/schemas/job
+GET /api/v1/events
+GET /api/v1/caller
 GET /openapi.json
 GET /openapi.yaml
 GET /healthz

@@ -141,7 +141,9 @@ export class Contract {
       }
       return;
     }
-    const wrong = this.wrong(`${body}/content/${escape(type)}/schema`, parsed(exchange.body));
+    const value = type === "application/x-www-form-urlencoded"
+      ? Object.fromEntries(new URLSearchParams(exchange.body.toString("utf8"))) : parsed(exchange.body);
+    const wrong = this.wrong(`${body}/content/${escape(type)}/schema`, value);
     if (wrong) {
       yield `accepted, but the body ${wrong}`;
     }
@@ -172,7 +174,7 @@ export class Contract {
     const { content } = this.at(pointer);
     const type = headers["content-type"]?.split(";")[0];
     if (!content) {
-      yield* body.length > 0 || type ? [`a body of type ${type} is not documented`] : [];
+      yield* body.length > 0 ? [`a body of type ${type} is not documented`] : [];
     } else if (!content[type]) {
       yield `the content type ${type} is not documented`;
     } else if (method !== "HEAD" && whole) {

@@ -14,7 +14,9 @@ const once = new Set([
 ]);
 
 // What need not be seen, and why.
-const unseen = new Map([]);
+const unseen = new Map([
+  ["InternalError", "only a fault of the program gives it"],
+]);
 
 // Paths that are pages for people; they are not part of the description.
 const page = /^\/($|jobs\/[^/]+$|static\/|docs(\/|$)|[a-z]+\.html$)/;
