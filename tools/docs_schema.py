@@ -122,7 +122,7 @@ def document(schema, first):
     others, each once."""
     def link(reference):
         name = reference.rsplit("/", 1)[1]
-        return name, f"#{slug(name)}"
+        return name, f"#{slug(name)}" if name in definitions else "#document"
 
     definitions = schema.get("$defs", {})
     schemas = Schemas(link, lambda reference: definitions.get(reference.rsplit("/", 1)[1], {}))

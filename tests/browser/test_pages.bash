@@ -252,7 +252,6 @@ test_narrow() {
       for page in '' /job; do
         page_open "$base/docs$page"
         expect "docs$page fits ($size, $mode)" 'document.documentElement.scrollWidth <= window.innerWidth'
-        shot "docs${page#/}-${size% *}-$mode"
       done
     done
   done
