@@ -10,7 +10,7 @@
 #include "server/http/tls.h"
 
 enum {
-  THREADS = 8,           /* submissions that wait for the same commit hold one each */
+  THREADS = 4,           /* more of them than cores cost latency under load */
   DESCRIPTORS_OWN = 300, /* for the database, workers, files that are being sent */
   IDLE_TIMEOUT_S = 15
 };

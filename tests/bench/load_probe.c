@@ -13,7 +13,7 @@
 
 #include "tests/bench/load_net.h"
 
-enum { ANSWER_MAX = 1 << 20 };
+enum { ANSWER_MAX = 1 << 20, LAST_ANSWER_MS = 10000 };
 
 struct link {
   int fd;
@@ -75,7 +75,8 @@ static int probe_send(struct probe *probe, double due_ms) {
     if (link->waiting) {
       continue;
     }
-    if (link->fd < 0 || recv(link->fd, link->answer, 1, MSG_PEEK) == 0) {
+    if (link->fd < 0 || recv(link->fd, link->answer, 1, MSG_PEEK) >= 0) {
+      /* not open yet, or the server has closed it for having been idle */
       if (link->fd >= 0) {
         close(link->fd);
       }
@@ -111,7 +112,7 @@ static void probe_wait(struct probe *probe, double wait_ms) {
 
 static void probe_run(struct probe *probe, double rate, double seconds) {
   double since = load_now_ms(), until = since + 1e3 * seconds, due = since;
-  for (double now = since; now < until + 1000; now = load_now_ms()) {
+  for (double now = since; now < until + LAST_ANSWER_MS; now = load_now_ms()) {
     size_t waiting = 0;
     while (due <= now && due < until && probe_send(probe, due)) {
       due += 1e3 / rate;
@@ -159,5 +160,13 @@ int main(int argc, char **argv) {
   printf("{\"sent\":%zu,\"answered\":%zu,\"failed\":%zu,\"p50_ms\":%.3f,\"p99_ms\":%.3f,"
          "\"max_ms\":%.3f}\n",
          probe.sent, probe.taken, probe.failed, p50, p99, most);
+  for (size_t i = 0; i < probe.link_count; i++) {
+    if (probe.links[i].fd >= 0) {
+      close(probe.links[i].fd);
+    }
+    free(probe.links[i].answer);
+  }
+  free(probe.links);
+  free(probe.taken_ms);
   return 0;
 }
