@@ -12,9 +12,9 @@ run() {
   grep -E 'BROKEN|Error|Traceback|SKIPPED' -A 3 "$WORK/$1.txt"
 }
 
-run kill_daemon.py --rounds 6 --ready 60
-run kill_worker.py --kills 6 --noticed 60
+run kill_daemon.py --rounds 5 --ready 60
+run kill_worker.py --kills 4 --noticed 60
 run idempotency.py --clients 50 --keys 1
 run disk.py --every 4 --once 3 --seconds 0.3 --fillings 1 --back 60
-run day.py --minutes 0.15 --load 2 --brief
+run day.py --minutes 0.1 --load 2 --brief
 finish
