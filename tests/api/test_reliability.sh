@@ -3,7 +3,7 @@
 # this machine meanwhile.
 . "$(dirname "$0")/lib.sh"
 SCRIPTS=$(cd "$(dirname "$0")/../reliability" && pwd)
-export BIN
+export BIN PYTHONDONTWRITEBYTECODE=1
 : > "$WORK/stderr"
 
 run() {
