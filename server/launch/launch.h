@@ -31,8 +31,8 @@ struct launch {
 /* ---- supervise.c ------------------------------------------------------------------------- */
 
 /* Runs the worker and returns its wait status once it and everything it started are gone. SIGTERM
- * and SIGINT are passed on to the worker's process group; SIGHUP, which also comes when the daemon
- * dies, ends all of it at once. */
+ * and SIGINT are passed on to the worker's process group; SIGHUP ends all of it at once, and so
+ * does the death of the daemon. */
 int launch_supervise(const struct launch *launch);
 
 /* ---- worker.c ---------------------------------------------------------------------------- */

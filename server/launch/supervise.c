@@ -149,7 +149,9 @@ int launch_supervise(const struct launch *launch) {
   sigset_t signals;
   signals_block(&signals);
   prctl(PR_SET_CHILD_SUBREAPER, 1UL, 0UL, 0UL, 0UL);
-  prctl(PR_SET_PDEATHSIG, (unsigned long)SIGHUP, 0UL, 0UL, 0UL);
+  /* When the daemon dies the kernel alone ends a namespace, process by process; without one there
+   * is work left for orphans_end. */
+  prctl(PR_SET_PDEATHSIG, (unsigned long)(launch->namespaces ? SIGKILL : SIGHUP), 0UL, 0UL, 0UL);
   if (launch->parent >= 0 && getppid() != launch->parent) {
     return STATUS_NOT_STARTED; /* the daemon died before that took hold */
   }

@@ -43,12 +43,10 @@ static void limit_set(int resource, uint64_t soft, uint64_t hard) {
 static void limits_set(const struct launch *launch) {
   struct rlimit none = {0, 0};
   limit_set(RLIMIT_DATA, launch->memory_bytes, launch->memory_bytes);
-#ifndef PNEULAB_SANITIZED
   if (launch->memory_bytes != 0) { /* shared memory too, with room for programs and files */
     uint64_t all = 2 * launch->memory_bytes + ((uint64_t)1 << 30);
     limit_set(RLIMIT_AS, all, all);
   }
-#endif
   /* SIGXCPU can be caught, SIGKILL five seconds later cannot. */
   limit_set(RLIMIT_CPU, launch->cpu_s, launch->cpu_s + 5);
   limit_set(RLIMIT_FSIZE, launch->file_bytes, launch->file_bytes);

@@ -75,7 +75,9 @@ check_match "its reason" "another pneulabd" "$(cat "$WORK/second")"
 # A cancelled job stays cancelled over a crash.
 wait_state "$sleepy" running > /dev/null
 curl -s -X POST "$URL/api/v1/jobs/$sleepy/cancel" > /dev/null &
-sleep 0.05
+for _ in $(seq 500); do # from then on it is a promise
+  [ "$(sql "select state from job where id = $sleepy")" = running ] || break
+done
 stop_daemon KILL
 wait
 start_daemon --workers 2 --retry-delay 0.1 --solver "$SOLVER" --drain-timeout 2
