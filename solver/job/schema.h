@@ -22,7 +22,12 @@ enum status schema_create(const char *text, size_t size, const struct units *uni
                           struct schema **schema, struct error *error);
 void schema_destroy(struct schema *schema);
 
-/* STATUS_OK, or STATUS_INVALID with the pointer to the first place that breaks a rule. */
+/* STATUS_OK, or STATUS_INVALID with the pointer to the first place that breaks a rule, or
+ * STATUS_NO_MEMORY. First is: at a value its own keywords, the choice of a branch, maxProperties,
+ * members without a name in the schema, in the order of the document, their names, missing keys,
+ * minItems and maxItems, then the named members in the order of the schema, and the items; all of
+ * one before the next. The error says what was found, what is allowed, the known word nearest to
+ * it, and an example from the schema. */
 enum status schema_check(const struct schema *schema, const json_t *value, struct error *error);
 
 /* Adds every absent property that has a `default` to a document that schema_check has accepted.

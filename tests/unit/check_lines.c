@@ -1,5 +1,5 @@
 /* check_lines SCHEMA.json: reads one JSON document a line from standard input and prints for each
- * "ok", or the pointer and message with which the schema checker refuses it. */
+ * "ok", or the pointer, a tab and the message with which the schema checker refuses it. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -17,7 +17,7 @@ static void check_line(const struct schema *schema, const char *line, size_t siz
   if (status == STATUS_OK) {
     puts("ok");
   } else {
-    printf("%s: %s\n", error.pointer, error.message);
+    printf("%s\t%s\n", error.pointer, error.message);
   }
 }
 
