@@ -7,7 +7,7 @@ build_packages=(
   libopenblas-dev libgsl-dev libpng-dev zlib1g-dev libcairo2-dev libpango1.0-dev libjansson-dev
   libudunits2-dev libmd-dev libseccomp-dev check fonts-dejavu-core curl jq python3-yaml sqlite3
 )
-test_packages=(chromium calculix-ccx python3 python3-jsonschema procps openssl mandoc
+test_packages=(chromium calculix-ccx python3 procps openssl mandoc
   libmumps-seq-dev)
 # An npm from elsewhere comes with a Node.js that conflicts with those of Debian.
 command -v npm >/dev/null || test_packages+=(nodejs npm)

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 #include "server/base/file.h"
+#include "solver/job/json.h"
 
 enum {
   EXIT_SUCCEEDED = 0,
@@ -106,7 +107,7 @@ static bool outcome_read(struct outcome *outcome, const char *path, struct error
     return false;
   }
   json_error_t reason;
-  outcome->result = json_loadb(outcome->result_text, size, JSON_REJECT_DUPLICATES, &reason);
+  outcome->result = json_read(outcome->result_text, size, JSON_REJECT_DUPLICATES, &reason);
   if (!json_is_object(outcome->result)) {
     error_set(error, STATUS_SYNTAX, NULL, "The solver printed no JSON object: %s (line %d).",
               outcome->result ? "another value" : reason.text, reason.line);

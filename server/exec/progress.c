@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "server/base/clock.h"
+#include "solver/job/json.h"
 
 enum { PACE_FIRST_MS = 300 }; /* earlier a rate means nothing */
 
@@ -29,7 +30,7 @@ static int64_t count_read(const json_t *event, const char *name) {
 }
 
 void progress_take_line(const char *line, size_t size, struct progress *progress) {
-  json_t *event = json_loadb(line, size, JSON_REJECT_DUPLICATES, NULL);
+  json_t *event = json_read(line, size, JSON_REJECT_DUPLICATES, NULL);
   const char *word = json_string_value(json_object_get(event, "event"));
   const json_t *fraction = json_object_get(event, "fraction");
   const json_t *pressure = json_object_get(event, "pressure_kPa");

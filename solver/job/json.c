@@ -1,6 +1,7 @@
 #include "solver/job/json.h"
 
 #include <ctype.h>
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -141,8 +142,6 @@ static enum status refuse_syntax(const char *text, size_t size, const json_error
   snprintf(piece, sizeof piece, "%.*s", (int)(end - start), text + start);
   text_quote(quoted, sizeof quoted, piece);
   switch (json_error_code(problem)) {
-  case json_error_out_of_memory:
-    return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the document");
   case json_error_duplicate_key:
     error_set(error, STATUS_SYNTAX, NULL,
               "the key %s stands twice in one object, a duplicate object key\neach key once",
@@ -199,7 +198,10 @@ enum status json_text_read(const char *text, size_t size, json_t **root, struct 
     return status;
   }
   json_error_t problem;
-  *root = json_loadb(text, size, JSON_REJECT_DUPLICATES, &problem);
+  *root = json_read(text, size, JSON_REJECT_DUPLICATES, &problem);
+  if (!*root && errno == ENOMEM) {
+    return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the document");
+  }
   return *root ? STATUS_OK : refuse_syntax(text, size, &problem, error);
 }
 
@@ -287,7 +289,7 @@ static void skip_value(struct scan *scan) {
 
 /* Whether the key written at `quoted` (with quotes and escapes) is the pointer part `part`. */
 static bool is_key(const char *quoted, size_t size, const char *part, size_t part_length) {
-  json_t *key = json_loadb(quoted, size, JSON_DECODE_ANY, NULL);
+  json_t *key = json_read(quoted, size, JSON_DECODE_ANY, NULL);
   const char *name = json_string_value(key);
   bool same = name != NULL;
   size_t i = 0;
@@ -386,7 +388,9 @@ void json_set_error(json_t *problem, const struct error *error) {
       json_object_set_new(problem, parts[i].key, json_string(parts[i].text));
     }
   }
-  json_t *example = error->example[0] ? json_loads(error->example, JSON_DECODE_ANY, NULL) : NULL;
+  json_t *example = error->example[0]
+                        ? json_read(error->example, strlen(error->example), JSON_DECODE_ANY, NULL)
+                        : NULL;
   if (example) {
     json_object_set_new(problem, "example", example);
   }

@@ -15,6 +15,10 @@ enum { JSON_TEXT_MAX = 1 << 20, JSON_DEPTH_MAX = 32 };
  * JSON_DEPTH_MAX (STATUS_SYNTAX with line and column). */
 enum status json_text_read(const char *text, size_t size, json_t **root, struct error *error);
 
+/* Jansson's json_loadb for any text, which is safe where memory runs out: then NULL with errno
+ * ENOMEM, and *problem (which may be NULL) says nothing. Otherwise errno is 0. */
+json_t *json_read(const char *text, size_t size, size_t flags, json_error_t *problem);
+
 /* Line and column (from 1, in characters) of the value that `pointer` names in `text`, which
  * json_text_read has accepted. Where the pointer leads beyond the text, the place of the last
  * value on its way. */

@@ -89,7 +89,7 @@ static enum status refuse_text(struct walk *walk, const json_t *node, const char
     return STATUS_INVALID;
   }
   const struct error read = *walk->error;
-  json_t *example = json_loads(read.example, JSON_DECODE_ANY, NULL);
+  json_t *example = json_read(read.example, strlen(read.example), JSON_DECODE_ANY, NULL);
   json_t *right = right_quantity(walk, node, unit, json_string_value(example));
   json_decref(example);
   return schema_refuse(walk,

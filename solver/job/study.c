@@ -29,6 +29,7 @@ struct draft {
   char name[200];         /* "" until it has one */
   const json_t *labels;   /* of the design, or NULL */
   struct json_pointer at; /* the design, or what decides in its place */
+  bool unnamed;           /* there was no memory for the name */
 };
 
 /* ---- the changes of one member ------------------------------------------------------------ */
@@ -42,12 +43,14 @@ static void add_text(char *out, size_t size, const char *text) {
 
 /* "chamber gap 1 mm", after what the name has already. */
 static void add_to_name(struct draft *draft, const char *what, const json_t *value) {
-  char *text = json_is_string(value) ? NULL : json_dumps(value, JSON_ENCODE_ANY | JSON_COMPACT);
+  char *made = json_is_string(value) ? NULL : json_dumps(value, JSON_ENCODE_ANY | JSON_COMPACT);
+  const char *text = made ? made : json_string_value(value);
+  draft->unnamed = draft->unnamed || !text;
   add_text(draft->name, NAME_BYTES_MAX, draft->name[0] ? ", " : "");
   add_text(draft->name, NAME_BYTES_MAX, what);
   add_text(draft->name, NAME_BYTES_MAX, " ");
-  add_text(draft->name, NAME_BYTES_MAX, text ? text : json_string_value(value));
-  free(text);
+  add_text(draft->name, NAME_BYTES_MAX, text ? text : "");
+  free(made);
 }
 
 static const char *last_part(const char *pointer) {
@@ -172,7 +175,7 @@ static enum status no_memory(struct error *error) {
 
 /* The document of a member, a new reference, or NULL with the error filled. */
 static json_t *build(const json_t *document, const struct draft *draft, struct error *error) {
-  json_t *built = json_deep_copy(json_object_get(document, "base"));
+  json_t *built = draft->unnamed ? NULL : json_deep_copy(json_object_get(document, "base"));
   if (!built) {
     no_memory(error);
     return NULL;

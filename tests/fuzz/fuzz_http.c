@@ -6,8 +6,10 @@ int pneulabd_main(int argc, char **argv);
 #include "server/main.c"
 #undef main
 
+#include <arpa/inet.h>
 #include <ctype.h>
 #include <dirent.h>
+#include <errno.h>
 #include <ftw.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -54,17 +56,22 @@ static void start(void) {
     abort();
   }
   atexit(remove_directory);
-  FILE *printed = fdopen(ends[0], "r");
-  if (!printed || pthread_create(&thread, NULL, run_daemon, NULL) != 0 ||
-      !fgets(line, sizeof line, printed)) {
+  if (pthread_create(&thread, NULL, run_daemon, NULL) != 0) {
     abort();
+  }
+  for (size_t length = 0; !strchr(line, '\n');) { /* a timer's signal may interrupt the reading */
+    ssize_t got = read(ends[0], line + length, sizeof line - 1 - length);
+    length += got > 0 ? (size_t)got : 0;
+    if (got == 0 || (got < 0 && errno != EINTR) || length == sizeof line - 1) {
+      abort();
+    }
   }
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   address.sin_port = htons((uint16_t)strtoul(strrchr(line, ':') + 1, NULL, 10));
   dup2(own, STDOUT_FILENO);
   close(own);
   close(ends[1]);
-  fclose(printed);
+  close(ends[0]);
 }
 
 /* Sends the pieces; a daemon that has seen enough may close before. */
