@@ -115,9 +115,10 @@ static enum status check_keys(const json_t *document, struct error *error) {
   for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
     bool there = json_object_get(document, keys[i].key) != NULL;
     if (keys[i].needed && !there) {
-      return error_set(error, STATUS_INVALID, NULL,
-                       "the key \"%s\" is missing: the sampling \"%s\" needs it; for example %s",
-                       keys[i].key, sampling, keys[i].example);
+      return error_set(
+          error, STATUS_INVALID, NULL,
+          "the key \"%s\" is missing, which the sampling \"%s\" needs\nits value\n{\"%s\": %s}",
+          keys[i].key, sampling, keys[i].key, keys[i].example);
     }
     if (there && !keys[i].allowed) {
       snprintf(pointer, sizeof pointer, "/%s", keys[i].key);
