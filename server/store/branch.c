@@ -13,7 +13,8 @@ enum start {
   START_NOWHERE, /* all of it comes before the place */
   START_FIRST,   /* all of it comes after the place */
   START_ID,      /* after the place's id: the range is in the order of ids */
-  START_KEY      /* after the place's key and id */
+  START_KEY,     /* after the place's key and id: START_TIE, then */
+  START_TIE      /* at the place's key, after its id */
 };
 
 /* What is the same for all ranges of a page. */
@@ -22,8 +23,8 @@ struct branches {
   const struct list_query *query;
   const struct place *after;
   size_t most;
-  size_t label;            /* index of the label that leads, if there is one */
-  sqlite3_stmt *cached[8]; /* by start and whether the range is in the order of ids */
+  size_t label;             /* index of the label that leads, if there is one */
+  sqlite3_stmt *cached[10]; /* by start and whether the range is in the order of ids */
   struct places *places;
 };
 
@@ -110,7 +111,9 @@ static void range_sql(const struct branches *all, enum start start, bool ids, ch
   if (start == START_ID) {
     ADD(" AND j.%s %s ?6", id, sign);
   } else if (start == START_KEY) {
-    ADD(" AND (j.%s, j.%s) %s (?5, ?6)", key, id, sign);
+    ADD(" AND j.%s %s ?5", key, sign);
+  } else if (start == START_TIE) {
+    ADD(" AND j.%s = ?5 AND j.%s %s ?6", key, id, sign);
   }
   for (size_t i = 0, parameter = 8; i < query->label_count; i++) {
     if (i != all->label) {
@@ -154,13 +157,9 @@ static void range_bind(const struct branches *all, sqlite3_stmt *statement, cons
   }
 }
 
-static enum status range_collect(struct branches *all, const char *kind, enum job_state state,
-                                 struct error *error) {
+static enum status range_read(struct branches *all, const char *kind, enum job_state state,
+                              enum start start, struct error *error) {
   bool ids = by_id(all->query, state), names = all->query->sort == LIST_BY_NAME;
-  enum start start = range_start(all, state);
-  if (start == START_NOWHERE) {
-    return STATUS_OK;
-  }
   sqlite3_stmt **statement = &all->cached[2 * start + ids];
   enum status status = STATUS_OK;
   if (!*statement) {
@@ -183,6 +182,21 @@ static enum status range_collect(struct branches *all, const char *kind, enum jo
     }
   }
   sql_done(*statement);
+  return status;
+}
+
+/* Equals of the place come from a range of their own: however many there are, none is passed over.
+ */
+static enum status range_collect(struct branches *all, const char *kind, enum job_state state,
+                                 struct error *error) {
+  enum start start = range_start(all, state);
+  enum status status = STATUS_OK;
+  if (start == START_KEY) {
+    status = range_read(all, kind, state, START_TIE, error);
+  }
+  if (status == STATUS_OK && start != START_NOWHERE) {
+    status = range_read(all, kind, state, start, error);
+  }
   return status;
 }
 

@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 """Lists, counts, starts and claims of a daemon with many stored jobs.
 
-  bench_store.py OUT.json [--jobs N] [--queued N] [--few N]
+  bench_store.py OUT.json [--jobs N] [--queued N] [--few N] [--every N]
 
 Fills one database with N jobs (1000000 unless given) and another one with few (10000), starts the
 daemon on each and measures: the size of the file and the time of a start in proportion; the first
 and the hundredth page of the list of jobs for every filter with every order, the middle of five
 requests each; what monitors ask for; and how many jobs a second one worker gets through behind a
-long queue and a short one. Needs python3; BIN: where the programs are (the current folder).
+long queue and a short one. --every takes only each Nth filter with its order, for a trial. The status
+is 1 when a page took 10 ms or more, unless it was a trial. Needs python3; BIN: where the programs
+are (the current folder).
 """
 import argparse
 import http.client
@@ -21,9 +23,10 @@ import sys
 import tempfile
 import time
 
-BIN = pathlib.Path(os.environ.get("BIN", "."))
+BIN = pathlib.Path(os.environ.get("BIN", ".")).resolve()
 REPEATS = 5
-PAGES = 100
+PAGE, PAGES = 50, 100
+STEP = 450  # jobs that are passed over at a time on the way to the last page
 LIMIT_MS = 10.0
 
 FILTERS = ["", "state=succeeded", "state=failed", "state=queued,held", "state=succeeded,failed,cancelled",
@@ -66,9 +69,8 @@ INSERT INTO job (state, kind, name, document, spec_hash, created_ms, submitter, 
   SELECT 'queued', 'verify', 'waits', '{{"kind":"verify","case":"patch-test"}}', 'h', 1700000000000 + i,
     'user ' || (i % {users}), i % 5 FROM c;
 """
-SOLVER = """#!/bin/sh
-echo '{"status":"succeeded","metrics":{},"samples":[]}'
-"""
+SOLVER = "#!/bin/sh\necho '{\"status\":\"succeeded\",\"metrics\":{},\"samples\":[]}'\n"
+IDLE = "#!/bin/sh\nexec sleep 3600\n"
 
 
 class Daemon:
@@ -77,7 +79,8 @@ class Daemon:
     def __init__(self, data, *options):
         begin = time.monotonic()
         self.process = subprocess.Popen(
-            [BIN / "pneulabd", "--data", data, "--listen", "127.0.0.1:0", *options],
+            [BIN / "pneulabd", "--data", data, "--listen", "127.0.0.1:0", "--workers", "1",
+             "--drain-timeout", "0", *options],
             stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         line = self.process.stdout.readline()
         self.start_s = time.monotonic() - begin
@@ -104,9 +107,15 @@ class Daemon:
         self.process.wait()
 
 
+def solver(path, text):
+    path.write_text(text)
+    path.chmod(0o755)
+    return path
+
+
 def fill(data, script, **parts):
     """A database as the daemon makes it, with rows added while nobody uses it."""
-    Daemon(data, "--workers", "1").stop()
+    Daemon(data).stop()
     db = sqlite3.connect(data / "pneulab.db", isolation_level=None)
     db.executescript("PRAGMA synchronous = OFF; PRAGMA cache_size = -500000; PRAGMA temp_store = MEMORY; BEGIN;"
                      + script.format(**parts) + "COMMIT; PRAGMA wal_checkpoint(TRUNCATE);")
@@ -114,21 +123,21 @@ def fill(data, script, **parts):
     return (data / "pneulab.db").stat().st_size
 
 
-def lists(daemon):
+def lists(daemon, every):
     """Every filter with every order: milliseconds of the first and the hundredth page."""
     rows = []
-    for what in FILTERS:
-        for order in ORDERS:
-            path = f"/api/v1/jobs?sort={order}" + ("&" + what if what else "")
-            pages, at = 1, path
-            first = daemon.middle_ms(path)
-            while pages < PAGES:
-                cursor = json.loads(daemon.get(at)[1])["next"]
-                if not cursor:
-                    break
-                at = f"{path}&cursor={cursor}"
-                pages += 1
-            rows.append({"filter": what, "sort": order, "first_ms": first, "page": pages, "last_ms": daemon.middle_ms(at)})
+    for what, order in [(what, order) for what in FILTERS for order in ORDERS][::every]:
+        path = f"/api/v1/jobs?sort={order}" + ("&" + what if what else "")
+        passed, at = 0, path
+        first = daemon.middle_ms(path)
+        while passed < PAGE * (PAGES - 1):
+            cursor = json.loads(daemon.get(f"{at}&limit={STEP}")[1])["next"]
+            if not cursor:
+                break
+            at = f"{path}&cursor={cursor}"
+            passed += STEP
+        rows.append({"filter": what, "sort": order, "first_ms": first, "page": passed // PAGE + 1,
+                     "last_ms": daemon.middle_ms(at)})
     return rows
 
 
@@ -136,10 +145,7 @@ def jobs_per_second(work, queued, users):
     """How many jobs one worker gets through in ten seconds with so many waiting."""
     data = work / f"queue-{queued}-{users}"
     fill(data, QUEUE, jobs=queued, users=users)
-    solver = work / "solver"
-    solver.write_text(SOLVER)
-    solver.chmod(0o755)
-    daemon = Daemon(data, "--workers", "1", "--solver", solver)
+    daemon = Daemon(data, "--solver", solver(work / "solver", SOLVER))
     time.sleep(min(10, queued / 100))
     daemon.stop()
     db = sqlite3.connect(data / "pneulab.db")
@@ -149,7 +155,7 @@ def jobs_per_second(work, queued, users):
     return 1e3 * done / (last - first)
 
 
-def measure(work, jobs, few, queued):
+def measure(work, jobs, few, queued, every):
     result = {"program": "bench_store", "jobs": jobs, "few": few, "queued": queued}
     for name, count in (("few", few), ("many", jobs)):
         data = work / name
@@ -158,15 +164,15 @@ def measure(work, jobs, few, queued):
         print(f"{count} jobs: filled in {time.monotonic() - begin:.0f} s, {size / count:.0f} bytes a job", flush=True)
         starts = []
         for _ in range(3):
-            daemon = Daemon(data, "--workers", "1", "--solver", "/nonexistent/solver", "--retry-delay", "3600")
+            daemon = Daemon(data, "--solver", solver(work / "idle", IDLE))
             starts.append(daemon.start_s)
             if len(starts) < 3:
                 daemon.stop()
         result[name] = {"bytes_a_job": size / count, "start_s": min(starts),
                         "metrics_ms": daemon.middle_ms("/metrics"), "readyz_ms": daemon.middle_ms("/readyz"),
-                        "job_ms": daemon.middle_ms(f"/api/v1/jobs/{count // 2}"), "lists": lists(daemon)}
+                        "job_ms": daemon.middle_ms(f"/api/v1/jobs/{count // 2}"), "lists": lists(daemon, every)}
         daemon.stop()
-    result["jobs_per_second"] = {"short": jobs_per_second(work, 1000, 1), "long": jobs_per_second(work, queued, 20),
+    result["jobs_per_second"] = {"short": jobs_per_second(work, min(1000, queued), 1), "long": jobs_per_second(work, queued, 20),
                                  "long_all_different": jobs_per_second(work, queued, queued)}
     return result
 
@@ -177,9 +183,11 @@ def main():
     parser.add_argument("--jobs", type=int, default=1000000)
     parser.add_argument("--few", type=int, default=10000)
     parser.add_argument("--queued", type=int, default=100000)
+    parser.add_argument("--every", type=int, default=1)
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as work:
-        result = measure(pathlib.Path(work), arguments.jobs, arguments.few, arguments.queued)
+        result = measure(pathlib.Path(work), arguments.jobs, arguments.few, arguments.queued,
+                         arguments.every)
     pathlib.Path(arguments.out).write_text(json.dumps(result, indent=1) + "\n")
     for name in ("few", "many"):
         one = result[name]
@@ -192,7 +200,7 @@ def main():
     print("jobs a second of one worker:",
           ", ".join(f"{name} {rate:.0f}" for name, rate in result["jobs_per_second"].items()))
     slow = [row for row in result["many"]["lists"] if max(row["first_ms"], row["last_ms"]) >= LIMIT_MS]
-    return 1 if slow else 0
+    return 1 if slow and arguments.every == 1 else 0
 
 
 if __name__ == "__main__":
