@@ -5,7 +5,8 @@
 
 #include <stdint.h>
 
-/* Sends "READY=1", "STOPPING=1", "WATCHDOG=1" or "STATUS=...". Nothing happens when nobody asked. */
+/* Sends "READY=1", "STOPPING=1", "WATCHDOG=1" or "STATUS=...". Nothing happens when nobody asked.
+ */
 void notify_send(const char *state);
 
 /* How often WATCHDOG=1 is to be sent, in ms: half of what systemd waits; 0: never. */
