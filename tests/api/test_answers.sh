@@ -13,7 +13,9 @@ head -c 2097152 /dev/zero | tr '\0' ' ' > "$WORK/big"
 fetch POST /api/v1/jobs:validate --data-binary "@$WORK/big"
 check "2 MiB to check" "413 too_large" "$CODE $(field .code)"
 
-for path in /sign-in /sign-out; do
+fetch PATCH "/api/v1/jobs/$id" --data-binary "@$WORK/big"
+check "2 MiB for a change" "413 too_large" "$CODE $(field .code)"
+for path in /sign-in /sign-out "/api/v1/jobs/$id/retry"; do
   fetch POST $path --data-binary "@$WORK/big"
   check "2 MiB for $path" "413 too_large" "$CODE $(field .code)"
 done

@@ -5,6 +5,7 @@ import spectralCore from "@stoplight/spectral-core";
 import spectralParsers from "@stoplight/spectral-parsers";
 import spectralRulesets from "@stoplight/spectral-rulesets";
 import { readFileSync } from "node:fs";
+import { parse, stringify } from "yaml";
 
 const file = process.argv[2];
 
@@ -34,16 +35,17 @@ async function spectral() {
   linter.setRuleset({
     extends: [spectralRulesets.oas],
     rules: {
-      // It takes a key named "parameters" of the job schema for parameters of an operation; Redocly
-      // checks the form of examples, too.
-      "oas3-examples-value-or-externalValue": "off",
       // It takes the roles that OpenAPI 3.1 allows here for scopes, which only OAuth has.
       "oas3-operation-security-defined": "off",
-      // The values of a parameter of a study may be anything: OpenAPI 3.1 allows that, 3.0 did not.
-      "array-items": "off",
     },
   });
-  const document = new Document(readFileSync(file, "utf8"), spectralParsers.Yaml, file);
+  // The schemas of documents are left to Redocly: Spectral takes their keys for those of OpenAPI, and
+  // follows them anew from every example.
+  const api = parse(readFileSync(file, "utf8"));
+  for (const name of ["JobDocument", "ResultDocument"]) {
+    api.components.schemas[name] = { type: "object" };
+  }
+  const document = new Document(stringify(api), spectralParsers.Yaml, file);
   const problems = await linter.run(document);
   return problems.map((problem) => `spectral ${problem.code}: /${problem.path.join("/")}: ${problem.message}`);
 }
