@@ -35,9 +35,13 @@ fetch POST /api/v1/jobs -H 'Prefer: wait=30' --data-binary "$(job '.name = "hung
 check "a worker over its memory limit is not tried again" "failed memory_limit 1" "$(field '.state + " " + .reason_code') $(field .attempt)"
 fetch POST /api/v1/jobs -H 'Prefer: wait=20' --data-binary "$(job '.name = "sleepy"')" &
 other=$!
-sleep 0.5
+for _ in $(seq 200); do
+  worker=$(sql "select pid from attempt join job on job.id = job_id where name = 'sleepy' and state = 'running'")
+  [ -n "$worker" ] && break
+  sleep 0.05
+done
 sleepy=$(sql "select id from job where name = 'sleepy'")
-kill -KILL "$(sql "select pid from attempt where job_id = $sleepy and number = 1")"
+kill -KILL "$worker"
 check "a worker killed from outside is replaced" 2 \
   "$(for _ in $(seq 100); do n=$(sql "select attempt from job where id = $sleepy and state = 'running'"); [ "$n" = 2 ] && break; sleep 0.05; done; echo "$n")"
 curl -s -X POST "$URL/api/v1/jobs/$sleepy/cancel" > /dev/null
