@@ -1,0 +1,39 @@
+#!/usr/bin/env python3
+"""Prints the branch coverage of what reads bytes from outside, from the build in this directory."""
+import glob
+import re
+import subprocess
+
+FOLDERS = ("solver/base", "solver/job", "server/base", "server/http")
+PARSERS = ("json json_memory schema schema_* spec spec_* embed study study_* trials steps tensile "
+           "measured parameter mirror *_check bistable hlpv units table text error numbers url "
+           "request guard option options").split()
+
+
+def branches(notes, source):
+    """Number of branches of a source and the share in percent that was taken, or None."""
+    report = subprocess.run(["gcov", "-b", "-n", "-o", notes, notes], capture_output=True,
+                            text=True, check=False).stdout
+    found = re.search(r"File '[^']*" + re.escape(source) +
+                      r"'\n.*\n.*\nTaken at least once:([\d.]+)% of (\d+)", report)
+    return (int(found[2]), float(found[1])) if found else None
+
+
+def main():
+    names = {name for parser in PARSERS for folder in FOLDERS
+             for name in glob.glob(f"{folder}/*-{parser}.gcda")}
+    rows = []
+    for name in names:
+        folder, file = name.rsplit("/", 1)
+        source = f"{folder}/{file.split('-')[-1][:-len('.gcda')]}.c"
+        counted = branches(name, source)
+        if counted:
+            rows.append((counted[1], counted[0], source))
+    for share, count, source in sorted(rows):
+        print(f"{source:40} {count:6} {share:6.1f} %")
+    total = sum(count for _, count, _ in rows)
+    taken = sum(share * count for share, count, _ in rows)
+    print(f"{'all':40} {total:6} {taken / max(total, 1):6.1f} %")
+
+
+main()
