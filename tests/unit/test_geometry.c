@@ -155,7 +155,7 @@ static const struct {
      "/actuator/side_wall", "at most 14.95 mm"},
     /* cavity 30 - 4 = 26 mm */
     {"/actuator/taper", "{}", "/actuator/channel/width", "\"21 mm\"", "\"26.1 mm\"",
-     "/actuator/channel/width", "only 26 mm"},
+     "/actuator/channel/width", "at most as much as the cavities, 26 mm"},
     /* below 6 - 1.5 = 4.5 mm */
     {NULL, NULL, "/actuator/channel/height", "\"4.49 mm\"", "\"4.5 mm\"",
      "/actuator/channel/height", "lower than 4.5 mm"},
@@ -163,9 +163,9 @@ static const struct {
      "lower than 2 mm"},
     /* 6 + 1.5 + 0.1 + 1 + 1.5 = 10.1 mm */
     {NULL, NULL, "/actuator/height", "\"10.11 mm\"", "\"10.09 mm\"", "/actuator/height",
-     "take 10.1 mm"},
+     "at least 10.1 mm"},
     {"/actuator/chambers", "[{\"config\": \"B\", \"count\": 12}]", "/actuator/height",
-     "\"7.61 mm\"", "\"7.59 mm\"", "/actuator/height", "take 7.6 mm"},
+     "\"7.61 mm\"", "\"7.59 mm\"", "/actuator/height", "at least 7.6 mm"},
     {NULL, NULL, "/actuator/height", "{\"base\": \"20 mm\", \"tip\": \"10.11 mm\"}",
      "{\"base\": \"20 mm\", \"tip\": \"10.09 mm\"}", "/actuator/height/tip", "10.1 mm"},
     {NULL, NULL, "/actuator/height", "{\"base\": \"10.11 mm\", \"tip\": \"20 mm\"}",
