@@ -275,7 +275,7 @@ static enum status place_columns(struct reading *reading, const struct record *h
     for (size_t k = 0; k < i; k++) {
       if (reading->place[k] == place) {
         return error_set(reading->error, STATUS_INVALID, wanted->pointer,
-                         "the column %s is named for two quantities",
+                         "the column %s is named for two quantities\na column for each",
                          text_quote(name, sizeof name, wanted->name));
       }
     }
@@ -421,8 +421,10 @@ static enum status read_rows(struct scanner *scanner, struct reading *reading,
   }
   return table->rows > 0
              ? STATUS_OK
-             : error_set(reading->error, STATUS_INVALID, reading->pointer,
-                         "the table has no rows below its header, line %d", reading->header_line);
+             : error_set(
+                   reading->error, STATUS_INVALID, reading->pointer,
+                   "the table has no rows below its header, line %d\none row of numbers or more",
+                   reading->header_line);
 }
 
 enum status table_read(const char *text, size_t size, const char *pointer,

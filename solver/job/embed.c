@@ -65,7 +65,7 @@ static enum status folder_of(const char *path, char **folder) {
 static enum status refuse_file(struct embedding *embedding, const char *name, const char *why) {
   char quoted[160];
   return error_set(embedding->error, STATUS_INVALID, embedding->pointer.text,
-                   "the file %s %s: paths start at the folder of the job's file",
+                   "the file %s %s\npaths start at the folder of the job's file",
                    text_quote(quoted, sizeof quoted, name), why);
 }
 

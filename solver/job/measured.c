@@ -40,7 +40,8 @@ static enum status check_name(const struct column_spec *column, const char *cons
     return STATUS_OK;
   }
   return error_set(error, STATUS_INVALID, column->pointer,
-                   "by its name the column %s holds %s: are pressure and angle exchanged?",
+                   "by its name the column %s holds %s\nthe column that was meant; are pressure "
+                   "and angle exchanged?",
                    text_quote(name, sizeof name, column->name), holds);
 }
 
@@ -69,8 +70,8 @@ static enum status check_overlap(const struct measured_curve *curve, const struc
   }
   return error_set(
       error, STATUS_INVALID, "/measured/data/csv",
-      "the measured pressures, %.4g to %.4g kPa, have nothing in common with the load, "
-      "0 to %.4g kPa: is the unit or the column another one?",
+      "the measured pressures, %.4g to %.4g kPa, have nothing in common with the load\n"
+      "0 to %.4g kPa; is the unit or the column another one?",
       1e-3 * low, 1e-3 * high, 1e-3 * to);
 }
 

@@ -1,4 +1,5 @@
 /* Which dimensions of a bellows exclude each other. Lengths in messages are in mm. */
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -82,10 +83,11 @@ static enum status check_bore(const struct snap_spec *s, double radius, double i
   }
   double most = s->given.snapping_slant + free / cos(p->snapping_angle);
   if (most <= 0.0) {
-    return error_set(error, STATUS_GEOMETRY, "/actuator/outer_diameter",
-                     "a body of %.6g mm is too narrow for hinges of %.6g mm and walls of %.6g mm: "
-                     "their inner crests would cross the axis",
-                     to_mm(s->given.outer_diameter), to_mm(s->hinge_length), to_mm(2.0 * half));
+    return error_set(
+        error, STATUS_GEOMETRY, "/actuator/outer_diameter",
+        "a body of %.6g mm is too narrow for hinges of %.6g mm and walls of %.6g mm\na wider one: "
+        "their inner crests would cross the axis",
+        to_mm(s->given.outer_diameter), to_mm(s->hinge_length), to_mm(2.0 * half));
   }
   return error_set(error, STATUS_GEOMETRY, "/actuator/snapping_slant",
                    "shells of %.6g mm at %.6g deg reach across the axis\ntheir slant must be below "
@@ -104,12 +106,9 @@ static enum status support(const struct snap_spec *s, int k, double *slant, stru
   double closing =
       closing_slant(s, angle, k < 0 ? g->snapping_slant : s->pair[k].snapping_slant, next);
   *slant = isnan(g->supporting_slant) ? closing : g->supporting_slant;
-  if (!(*slant > 0.0)) {
-    return error_set(error, STATUS_GEOMETRY, "/actuator/snapping_slant",
-                     "shells of %.6g mm that snap leave no supporting shells between the hinges\na "
-                     "longer slant\n\"%.3g mm\"",
-                     to_mm(g->snapping_slant), to_mm(g->snapping_slant + s->hinge_length));
-  }
+  /* The shells that snap are less steep, so that their arcs lead further: (1 - sin(a)) / (pi - a -
+   * b) is more than (1 - sin(b)) / (pi - 2 b) where a < b. */
+  assert(*slant > 0.0);
   if (s->ends == SNAP_PERIODIC && fabs(*slant - closing) > rounding * closing) {
     return error_set(error, STATUS_GEOMETRY, "/actuator/supporting_slant",
                      "an endless row needs equally wide crests\nsupporting shells of %.6f mm, not "

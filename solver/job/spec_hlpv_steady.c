@@ -15,6 +15,7 @@ struct state {
   double u, h;
 };
 
+/* sentence: what was found, what is allowed and an example, each in a line. */
 static enum status refuse(const struct reader *reader, const struct json_pointer *pointer,
                           const char *sentence) {
   return error_set(reader->error, STATUS_INVALID, pointer->text, "%s", sentence);
@@ -27,7 +28,9 @@ static enum status read_state(const struct reader *reader, const struct hlpv_spe
   const json_t *u = json_array_get(pair, 0), *h = json_array_get(pair, 1);
   enum status status = STATUS_OK;
   if (!json_is_string(u)) {
-    return refuse(reader, pointer, "a set-point comes first; for example [\"3 psi\", \"5 mm\"]");
+    return refuse(reader, pointer,
+                  "the first item is no set-point\na set-point comes first, and then the "
+                  "elongation\n[\"3 psi\", \"5 mm\"]");
   }
   status = units_read(reader->units, json_string_value(u), "kPa", &state->u, reader->error);
   if (status == STATUS_OK && json_is_string(h)) {
@@ -37,7 +40,8 @@ static enum status read_state(const struct reader *reader, const struct hlpv_spe
     if (spec->rest_length == 0.0) {
       return refuse(reader, pointer,
                     "an elongation without a unit is a part of rest_length, which the model does "
-                    "not give");
+                    "not give\nan elongation with its unit, or a model with rest_length\n[\"3 "
+                    "psi\", \"5 mm\"]");
     }
   }
   if (status != STATUS_OK) {
@@ -75,15 +79,19 @@ static enum status through_states(const struct reader *reader, const struct hlpv
   for (int i = 0; i < count; i++) {
     for (int j = 0; j < i; j++) {
       if (state[i].u == state[j].u) {
-        return refuse(reader, pointer, "two states of rest have the same set-point");
+        return refuse(
+            reader, pointer,
+            "two states of rest have the same set-point\neach has a set-point of its own\n"
+            "[[\"3 psi\", \"5 mm\"], [\"5 psi\", \"14 mm\"]]");
       }
     }
     u[i] = state[i].u / per;
     k[i] = spec->gamma * state[i].u / (state[i].h - mode->rest);
     if (!(k[i] > 0.0 && isfinite(k[i]))) {
-      return refuse(reader, pointer,
-                    "a state of rest needs a positive stiffness: set-point and elongation from "
-                    "the rest have one sign, and neither is 0");
+      return refuse(
+          reader, pointer,
+          "a state of rest has no positive stiffness\nset-point and elongation from the rest "
+          "have one sign, and neither is 0\n[[\"3 psi\", \"5 mm\"]]");
     }
   }
   interpolate(count, u, k, &mode->stiffness);
@@ -96,12 +104,16 @@ static enum status along_slope(const struct reader *reader, const struct hlpv_sp
                                const struct state *state, int count, struct hlpv_mode *mode) {
   double k = spec->gamma * slope->u / slope->h;
   if (!(k > 0.0 && isfinite(k))) {
-    return refuse(reader, pointer,
-                  "the slope needs a positive stiffness, gamma times its change of "
-                  "set-point over its change of elongation");
+    return refuse(
+        reader, pointer,
+        "the slope has no positive stiffness, gamma times its change of set-point over its "
+        "change of elongation\nchanges of one sign, neither of them 0\n[\"3 psi\", \"5 mm\"]");
   }
   if (count > 1) {
-    return refuse(reader, pointer, "beside \"slope\" one state of rest gives the rest of the mode");
+    return refuse(
+        reader, pointer,
+        "more than one state of rest stands beside \"slope\"\none, which gives the rest of "
+        "the mode\n[[\"3 psi\", \"5 mm\"]]");
   }
   mode->stiffness.count = 1;
   mode->stiffness.c[0] = k;
@@ -120,8 +132,9 @@ enum status reader_hlpv_stiffness(const struct reader *reader, const json_t *val
   int count = (int)json_array_size(states);
   enum status status = STATUS_OK;
   if (json_object_get(value, "coefficients")) {
-    return refuse(reader, pointer,
-                  "coefficients are given, or states of rest that they follow from");
+    return refuse(
+        reader, pointer,
+        "coefficients are given beside states of rest that they follow from\none of the two");
   }
   for (int i = 0; i < count && status == STATUS_OK; i++) {
     size_t mark = json_pointer_key(pointer, "states");

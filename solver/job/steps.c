@@ -282,10 +282,11 @@ static enum status part_trial(struct parting *p, size_t index) {
   }
   if (status == STATUS_OK && !moves) {
     char name[60];
-    status = error_set(p->error, STATUS_INVALID, trial->pointer,
-                       "line %d of the table: nothing moves in the trial %s that begins here: it "
-                       "has no step of the set-point",
-                       trial->line[0], text_quote(name, sizeof name, trial->name));
+    status =
+        error_set(p->error, STATUS_INVALID, trial->pointer,
+                  "line %d of the table: nothing moves in the trial %s that begins here\na trial "
+                  "has a step of the set-point",
+                  trial->line[0], text_quote(name, sizeof name, trial->name));
   }
   return status;
 }
@@ -310,9 +311,10 @@ static enum status add_point(struct parting *p, int mode, double set_point) {
     return STATUS_OK;
   }
   if (count == STEP_POINTS_MAX) {
-    return error_set(p->error, STATUS_TOO_LARGE, "/columns/set_point",
-                     "there are steps to more than %d set-points: is the column another one?",
-                     STEP_POINTS_MAX);
+    return error_set(
+        p->error, STATUS_TOO_LARGE, "/columns/set_point",
+        "there are steps to more than %d set-points\nat most %d; is the column another one?",
+        STEP_POINTS_MAX, STEP_POINTS_MAX);
   }
   struct step_point *grown = realloc(steps->point, (count + 1) * sizeof *grown);
   if (!grown) {
@@ -343,7 +345,7 @@ static enum status find_points(struct parting *p) {
       char name[60], pointer[40];
       snprintf(pointer, sizeof pointer, "/modes/%d", mode);
       return error_set(p->error, STATUS_INVALID, pointer,
-                       "the mode %s has no step of its own: none with %d rows or more in which "
+                       "the mode %s has no step of its own\none with %d rows or more in which "
                        "something moves, and that does not end with a switch",
                        text_quote(name, sizeof name, p->spec->mode[mode].name), STEP_ROWS_USED);
     }

@@ -330,8 +330,8 @@ static enum status read_ranking(const struct reader *reader, const json_t *docum
   }
   if (strcmp(study_base_kind(document), "response") != 0) {
     return error_set(reader->error, STATUS_INVALID, "/ranking",
-                     "a ranking measures bodies at stations along their midline: its base is of "
-                     "the kind \"response\", not \"%s\"; leave it out",
+                     "there is a ranking, and the base is of the kind \"%s\"\na base of the kind "
+                     "\"response\", whose midline has stations; or leave it out",
                      study_base_kind(document));
   }
   json_array_foreach(json_object_get(value, "stations"), index, station) {

@@ -20,9 +20,10 @@ static enum status value_of(const struct reader *reader, const json_t *value, co
     return STATUS_OK;
   }
   if (!json_is_string(value) || !unit[0]) {
-    return error_set(reader->error, STATUS_INVALID, "",
-                     "limits and parameters of a constraint are all quantities with units, or all "
-                     "numbers");
+    return error_set(
+        reader->error, STATUS_INVALID, "",
+        "quantities with units stand beside plain numbers\nlimits and parameters of a constraint "
+        "are all quantities with units, or all numbers");
   }
   return units_read(reader->units, json_string_value(value), unit, number, reader->error);
 }
@@ -35,7 +36,7 @@ static enum status read_limits(const struct reader *reader, const json_t *value,
   *constraint = (struct study_constraint){.low = -INFINITY, .high = INFINITY};
   if (!any) {
     return error_set(reader->error, STATUS_INVALID, "",
-                     "a constraint needs \"at_least\" or \"at_most\"; for example {\"sum\": "
+                     "a constraint without a limit\n\"at_least\" or \"at_most\"\n{\"sum\": "
                      "{\"/actuator/top_wall\": 1}, \"at_most\": \"3 mm\"}");
   }
   if (json_is_string(any)) {
@@ -70,7 +71,7 @@ static enum status read_one(const struct reader *reader, const json_t *parameter
     size_t k = find_parameter(parameters, pointer);
     if (status == STATUS_OK && k == json_array_size(parameters)) {
       status = error_set(reader->error, STATUS_INVALID, "",
-                         "%s is no parameter of this study: a sum takes the pointers under "
+                         "%s is no parameter of this study\na sum takes the pointers under "
                          "\"parameters\"",
                          pointer);
     } else if (status == STATUS_OK) {
@@ -82,10 +83,8 @@ static enum status read_one(const struct reader *reader, const json_t *parameter
 
 /* The error belongs to the constraint. */
 static enum status at_constraint(const struct reader *reader, size_t index, enum status status) {
-  struct error inner = *reader->error;
-  char pointer[40];
-  snprintf(pointer, sizeof pointer, "/constraints/%zu", index);
-  return error_set(reader->error, status, pointer, "%s", inner.message);
+  snprintf(reader->error->pointer, sizeof reader->error->pointer, "/constraints/%zu", index);
+  return status;
 }
 
 enum status study_constraints_read(const struct reader *reader, const json_t *document,

@@ -68,9 +68,10 @@ static enum status read_range(struct spread *s, size_t index, const json_t *para
   *range = (struct range){.values = json_object_get(parameter, "values")};
   if ((range->values != NULL) == (from != NULL) || (from != NULL) != (to != NULL) ||
       (scale && !from)) {
-    return refuse(s, index, NULL,
-                  "a parameter has either values to choose from or a range; for example "
-                  "{\"pointer\": \"/actuator/chamber_gap\", \"from\": \"1 mm\", \"to\": \"3 mm\"}");
+    return refuse(
+        s, index, NULL,
+        "this is neither a choice nor a range\neither values to choose from, or from and "
+        "to\n{\"pointer\": \"/actuator/chamber_gap\", \"from\": \"1 mm\", \"to\": \"3 mm\"}");
   }
   if (range->values) {
     return STATUS_OK;
@@ -78,19 +79,21 @@ static enum status read_range(struct spread *s, size_t index, const json_t *para
   range->whole = json_is_integer(from) && json_is_integer(to);
   range->logarithmic = scale && strcmp(scale, "log") == 0;
   if (!split(from, &range->from, &range->unit)) {
-    return refuse(s, index, "from", "this is no number with a unit; for example \"1 mm\"");
+    return refuse(s, index, "from",
+                  "this is no number with a unit\na number with its unit\n\"1 mm\"");
   }
   if (!split(to, &range->to, &other) || json_is_string(from) != json_is_string(to) ||
       strcmp(range->unit, other) != 0) {
     return refuse(s, index, "to",
-                  "from and to are written alike, with the same unit; for example \"1 mm\" and "
-                  "\"3 mm\"");
+                  "this is written in another way than \"from\"\nboth with the same unit, as \"1 "
+                  "mm\" and \"3 mm\"");
   }
   if (!(range->from < range->to)) {
-    return refuse(s, index, "to", "this has to be more than \"from\"");
+    return refuse(s, index, "to", "the range is empty\nthis has to be more than \"from\"");
   }
   if (range->logarithmic && range->from <= 0.0) {
-    return refuse(s, index, "from", "a logarithmic range begins above 0");
+    return refuse(s, index, "from",
+                  "the range begins at 0 or below\na logarithmic range begins above 0");
   }
   return STATUS_OK;
 }
@@ -151,7 +154,7 @@ static enum status draw_sequence(struct spread *s, uint64_t seed, json_t *const 
     }
     if (status == STATUS_OK && tried + 1 == TRIES_PER_MEMBER * s->members && taken < s->members) {
       status = error_set(s->reader->error, STATUS_INVALID, "/constraints",
-                         "of %zu points only %zu meet the constraints, and %zu members are wanted: "
+                         "of %zu points only %zu meet the constraints, and %zu members are wanted\n"
                          "widen the constraints or narrow the ranges",
                          tried + 1, taken, s->members);
     }
@@ -214,11 +217,13 @@ static enum status check_values(struct spread *s) {
   json_t *parameter;
   json_array_foreach(json_object_get(s->document, "parameters"), k, parameter) {
     char sentence[240];
-    snprintf(sentence, sizeof sentence,
-             "the sampling \"%s\" takes \"values\", and neither \"from\", \"to\" nor \"scale\"; "
-             "for example {\"pointer\": \"/actuator/chamber_gap\", \"values\": [\"1 mm\", "
-             "\"2 mm\"]}",
-             sampling);
+    snprintf(
+        sentence, sizeof sentence,
+        "there are no values, or a range beside them\nthe sampling \"%s\" takes \"values\", and "
+        "neither \"from\", \"to\" nor \"scale\"\n{\"pointer\": \"/actuator/chamber_gap\", "
+        "\"values\": [\"1 mm\", "
+        "\"2 mm\"]}",
+        sampling);
     if (!json_object_get(parameter, "values") || json_object_get(parameter, "from") ||
         json_object_get(parameter, "to") || json_object_get(parameter, "scale")) {
       return refuse(s, k, NULL, sentence);

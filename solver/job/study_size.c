@@ -123,7 +123,7 @@ static enum status check_keys(const json_t *document, struct error *error) {
     if (there && !keys[i].allowed) {
       snprintf(pointer, sizeof pointer, "/%s", keys[i].key);
       return error_set(error, STATUS_INVALID, pointer,
-                       "the sampling \"%s\" has no use for \"%s\": leave it out, or choose another "
+                       "the sampling \"%s\" has no use for \"%s\"\nleave it out, or choose another "
                        "sampling",
                        sampling, keys[i].key);
     }
@@ -142,8 +142,7 @@ enum status study_check_size(const json_t *document, struct error *error) {
                      study_is_list(document)     ? "/designs"
                      : study_is_spread(document) ? "/size"
                                                  : "/parameters",
-                     "the study has more than %zu members, the most that is allowed for the kind "
-                     "\"%s\"",
+                     "the study has more than %zu members\nat most %zu of the kind \"%s\"", most,
                      most, study_base_kind(document));
   }
   return check_text(document, count, error);

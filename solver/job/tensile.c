@@ -22,14 +22,16 @@ static enum status check_names(const struct fit_spec *fit, struct error *error) 
   static const char *const stresses[] = {"stress", "mpa", "kpa", "n/mm2", NULL};
   char name[80];
   if (text_mentions(fit->strain.name, stresses) && !text_mentions(fit->strain.name, strains)) {
-    return error_set(error, STATUS_INVALID, fit->strain.pointer,
-                     "by its name the column %s holds a stress, not a strain: %s",
-                     text_quote(name, sizeof name, fit->strain.name), exchanged);
+    return error_set(
+        error, STATUS_INVALID, fit->strain.pointer,
+        "by its name the column %s holds a stress, not a strain\na column of strains; %s",
+        text_quote(name, sizeof name, fit->strain.name), exchanged);
   }
   if (text_mentions(fit->stress.name, strains) && !text_mentions(fit->stress.name, stresses)) {
-    return error_set(error, STATUS_INVALID, fit->stress.pointer,
-                     "by its name the column %s holds a strain, not a stress: %s",
-                     text_quote(name, sizeof name, fit->stress.name), exchanged);
+    return error_set(
+        error, STATUS_INVALID, fit->stress.pointer,
+        "by its name the column %s holds a strain, not a stress\na column of stresses; %s",
+        text_quote(name, sizeof name, fit->stress.name), exchanged);
   }
   return STATUS_OK;
 }
@@ -56,7 +58,7 @@ static enum status convert(const struct fit_spec *fit, struct table *table, stru
     if (!(stretch > 0.0) || stretch > stretch_limit) {
       return error_set(error, STATUS_INVALID, "/data/csv",
                        "line %d of the table: %.6g in the column of the strain is a stretch of "
-                       "%.4g, which must be more than 0 and at most %g: %s",
+                       "%.4g\nit must be more than 0 and at most %g; %s",
                        table->line[i], given, stretch, stretch_limit, exchanged);
     }
     table->value[0][i] = stretch - 1.0;
@@ -117,26 +119,27 @@ static enum status check_look(const struct table *table, const struct look *look
   if (!(look->covariance > 0.0)) {
     return error_set(error, STATUS_INVALID, "/data/csv",
                      "the stress does not rise with the strain (%zu rows, lines %d to %d of the "
-                     "table): pulling is positive and pushing negative in both; %s",
+                     "table)\npulling is positive and pushing negative in both; %s",
                      table->rows, table->line[0], table->line[table->rows - 1], exchanged);
   }
   if (look->strain_back >= 3 && look->stress_back == 0) {
     return error_set(error, STATUS_INVALID, "/data/csv",
                      "the strain goes back %zu times, first in line %d of the table, while the "
-                     "stress never does: %s",
+                     "stress never does\na strain that rises as the stress does; %s",
                      look->strain_back, look->strain_back_line, exchanged);
   }
   if (fabs(e[near]) < 0.2 * fabs(e[far]) && fabs(s[near]) > 0.5 * look->stress_max) {
     return error_set(error, STATUS_INVALID, "/data/csv",
                      "line %d of the table: at a strain of %.4g the stress is %.4g MPa of at most "
-                     "%.4g MPa, so the curve does not start near zero: %s",
+                     "%.4g MPa, so the curve does not start near zero\nat most half of the largest "
+                     "stress there; %s",
                      table->line[near], e[near], 1e-6 * s[near], 1e-6 * look->stress_max,
                      exchanged);
   }
   if (!(modulus >= modulus_min && modulus <= modulus_max)) {
     return error_set(error, STATUS_INVALID, "/data/csv",
                      "line %d of the table: %.4g MPa at a strain of %.4g is a modulus of %.4g MPa, "
-                     "no elastomer's (0.0001 to 1000 MPa): %s",
+                     "no elastomer's\n0.0001 to 1000 MPa; %s",
                      table->line[far], 1e-6 * s[far], e[far], 1e-6 * modulus, exchanged);
   }
   return STATUS_OK;

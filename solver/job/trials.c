@@ -17,27 +17,31 @@ static const double range_min = 1e-6, range_max = 10.0, interval_max = 60.0, rat
 /* ---- names of columns --------------------------------------------------------------------- */
 
 static enum status check_name(const struct column_spec *column, const char *const *right,
-                              const char *const *wrong, const char *holds, struct error *error) {
+                              const char *const *wrong, const char *holds, const char *wanted,
+                              struct error *error) {
   char name[QUOTED_MAX];
   if (text_mentions(column->name, right) || !text_mentions(column->name, wrong)) {
     return STATUS_OK;
   }
-  return error_set(error, STATUS_INVALID, column->pointer,
-                   "by its name the column %s holds %s: are two columns exchanged?",
-                   text_quote(name, sizeof name, column->name), holds);
+  return error_set(
+      error, STATUS_INVALID, column->pointer,
+      "by its name the column %s holds %s\nthe column that holds %s; are two columns exchanged?",
+      text_quote(name, sizeof name, column->name), holds, wanted);
 }
 
 /* Refuses columns whose names say the opposite of their use. */
 static enum status check_names(const struct identify_spec *spec, struct error *error) {
   static const char *const lengths[] = {"elongation", "displacement", "(mm)", "(m)", NULL};
   static const char *const pressures[] = {"pressure", "kpa", "psi", "set-point", "setpoint", NULL};
-  enum status status = check_name(&spec->h, lengths, pressures, "a pressure", error);
+  enum status status =
+      check_name(&spec->h, lengths, pressures, "a pressure", "the elongation", error);
   if (status == STATUS_OK) {
-    status = check_name(&spec->pressure, pressures, lengths, "an elongation", error);
+    status =
+        check_name(&spec->pressure, pressures, lengths, "an elongation", "the pressure", error);
   }
-  return status == STATUS_OK
-             ? check_name(&spec->set_point, pressures, lengths, "an elongation", error)
-             : status;
+  return status == STATUS_OK ? check_name(&spec->set_point, pressures, lengths, "an elongation",
+                                          "the set-point", error)
+                             : status;
 }
 
 /* ---- one table ---------------------------------------------------------------------------- */
@@ -68,8 +72,8 @@ static enum status check_times(const struct gathering *g, const struct trial *tr
     if (!(now > before)) {
       return refuse(g, trial, i,
                     now == before
-                        ? "the time %.9g s is there twice: the times of a trial must rise"
-                        : "the time %.9g s is not after the one before it, %.9g s: the times of a "
+                        ? "the time %.9g s is there twice\nthe times of a trial must rise"
+                        : "the time %.9g s is not after the one before it, %.9g s\nthe times of a "
                           "trial must rise",
                     now, before);
     }
@@ -78,8 +82,8 @@ static enum status check_times(const struct gathering *g, const struct trial *tr
   return mean <= interval_max
              ? STATUS_OK
              : refuse(g, trial, 0,
-                      "from here the rows of the trial are %.4g s apart on average, more than %g "
-                      "s: is the unit of the time another one?",
+                      "from here the rows of the trial are %.4g s apart on average\nat most %g s; "
+                      "is the unit of the time another one?",
                       mean, interval_max);
 }
 
@@ -88,11 +92,11 @@ static enum status add_trial(struct gathering *g, const char *name, const char *
                              double *const *column, const int *line, size_t from, size_t to) {
   struct trials *trials = g->trials;
   if (trials->count == TRIALS_MAX) {
-    return error_set(g->error, STATUS_TOO_LARGE, pointer,
-                     "line %d of the table: here begins one trial more than the %d that are "
-                     "allowed: is \"trial\" another column? It numbers stretches of rows, for "
-                     "example 1, 1, 1, 2, 2, 2",
-                     line[from], TRIALS_MAX);
+    return error_set(
+        g->error, STATUS_TOO_LARGE, pointer,
+        "line %d of the table: here begins one trial more than are allowed\nat most %d; is "
+        "\"trial\" another column? It numbers stretches of rows, as 1, 1, 1, 2, 2, 2",
+        line[from], TRIALS_MAX);
   }
   if (trials->count == g->room) {
     size_t room = g->room ? 2 * g->room : 64;
@@ -270,20 +274,23 @@ static enum status check_units(const struct gathering *g) {
                      1e3 * h[0], 1e3 * h[1]);
   }
   if (!(set > 0.0)) {
-    return error_set(g->error, STATUS_INVALID, "/columns/set_point/name",
-                     "all set-points are 0: without a step nothing can be identified");
+    return error_set(
+        g->error, STATUS_INVALID, "/columns/set_point/name",
+        "all set-points are 0\na set-point with steps, without which nothing can be identified");
   }
   if (!(pressure <= ratio_max * set && set <= ratio_max * pressure)) {
-    return error_set(g->error, STATUS_INVALID, "/columns/pressure/unit",
-                     "the pressures reach %.4g kPa and the set-points %.4g kPa: is one of them in "
-                     "another unit (1 psi = 6.895 kPa)?",
-                     1e-3 * pressure, 1e-3 * set);
+    return error_set(
+        g->error, STATUS_INVALID, "/columns/pressure/unit",
+        "the pressures reach %.4g kPa and the set-points %.4g kPa\nneither more than %g "
+        "times the other; is one of them in another unit (1 psi = 6.895 kPa)?",
+        1e-3 * pressure, 1e-3 * set, ratio_max);
   }
   if (!(p[1] > p[0])) {
-    return error_set(g->error, STATUS_INVALID, "/columns/pressure/name",
-                     "the pressure is %.6g kPa in all rows: what moves cannot be told without its "
-                     "course; is it another column?",
-                     1e-3 * p[0]);
+    return error_set(
+        g->error, STATUS_INVALID, "/columns/pressure/name",
+        "the pressure is %.6g kPa in all rows\nthe course of the pressure, without which what "
+        "moves cannot be told; is it another column?",
+        1e-3 * p[0]);
   }
   return STATUS_OK;
 }

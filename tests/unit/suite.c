@@ -52,7 +52,12 @@ static void set_at(json_t *document, const char *pointer, const char *value) {
 
 enum status suite_read_edited(const char *const (*edits)[2], struct job_spec *spec,
                               struct error *error) {
-  json_t *document = json_loads(base_job, 0, NULL);
+  return suite_read_document(base_job, edits, spec, error);
+}
+
+enum status suite_read_document(const char *base, const char *const (*edits)[2],
+                                struct job_spec *spec, struct error *error) {
+  json_t *document = json_loads(base, 0, NULL);
   ck_assert_ptr_nonnull(document);
   for (; (*edits)[0]; edits++) {
     set_at(document, (*edits)[0], (*edits)[1]);
@@ -84,6 +89,27 @@ void suite_check_refusal(const struct refusal *refusal) {
                 refusal->pointer, value, error.message);
   ck_assert_int_ge(error.line, 1);
   ck_assert_int_ge(error.column, 1);
+}
+
+void suite_check_variant(const struct variant *variant) {
+  struct job_spec spec;
+  struct error error = {.status = STATUS_OK};
+  enum status status = suite_read_document(variant->base, variant->edits, &spec, &error);
+  const char *first = variant->edits[0][0] ? variant->edits[0][0] : "nothing";
+  const char *value = variant->edits[0][1] ? variant->edits[0][1] : "(removed)";
+  if (!variant->at) {
+    ck_assert_msg(status == STATUS_OK, "%s = %s: %s: %s", first, value, error.pointer,
+                  error.message);
+    job_spec_release(&spec);
+    return;
+  }
+  ck_assert_msg(status != STATUS_OK, "%s = %s was taken", first, value);
+  ck_assert_msg(strcmp(error.pointer, variant->at) == 0 &&
+                    strstr(error.message, variant->phrase) != NULL,
+                "%s = %s: %s: %s", first, value, error.pointer, error.message);
+  ck_assert_msg(error.allowed[0] != '\0', "%s = %s: nothing is allowed: %s", first, value,
+                error.message);
+  ck_assert_int_ge(error.line, 1);
 }
 
 void suite_check_near(double value, double wanted) {

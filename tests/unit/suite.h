@@ -18,7 +18,11 @@ enum status suite_read_changed(const char *pointer, const char *value, struct jo
 enum status suite_read_edited(const char *const (*edits)[2], struct job_spec *spec,
                               struct error *error);
 
-/* The same two, asserting that the job is valid. */
+/* The same for another job than that, the text `base`. */
+enum status suite_read_document(const char *base, const char *const (*edits)[2],
+                                struct job_spec *spec, struct error *error);
+
+/* The first two of them, asserting that the job is valid. */
 void suite_must_read(const char *pointer, const char *value, struct job_spec *spec);
 void suite_must_read_edited(const char *const (*edits)[2], struct job_spec *spec);
 
@@ -35,5 +39,16 @@ struct refusal {
 
 /* Asserts that the change is refused as described, with a place in the text. */
 void suite_check_refusal(const struct refusal *refusal);
+
+/* A job with a few changes, which is taken, or refused with a message that says what is allowed. */
+struct variant {
+  const char *base;        /* text of a job */
+  const char *edits[5][2]; /* as in suite_read_edited */
+  const char *at;          /* pointer of the error; NULL: the job is taken */
+  const char *phrase;      /* part of its message */
+};
+
+/* Asserts that the job is taken or refused as described. */
+void suite_check_variant(const struct variant *variant);
 
 #endif
