@@ -94,7 +94,8 @@ void suite_check_refusal(const struct refusal *refusal) {
 void suite_check_variant(const struct variant *variant) {
   struct job_spec spec;
   struct error error = {.status = STATUS_OK};
-  enum status status = suite_read_document(variant->base, variant->edits, &spec, &error);
+  enum status status =
+      suite_read_document(variant->base ? variant->base : base_job, variant->edits, &spec, &error);
   const char *first = variant->edits[0][0] ? variant->edits[0][0] : "nothing";
   const char *value = variant->edits[0][1] ? variant->edits[0][1] : "(removed)";
   if (!variant->at) {

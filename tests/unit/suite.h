@@ -42,7 +42,7 @@ void suite_check_refusal(const struct refusal *refusal);
 
 /* A job with a few changes, which is taken, or refused with a message that says what is allowed. */
 struct variant {
-  const char *base;        /* text of a job */
+  const char *base;        /* text of a job; NULL: that of suite_read_changed */
   const char *edits[5][2]; /* as in suite_read_edited */
   const char *at;          /* pointer of the error; NULL: the job is taken */
   const char *phrase;      /* part of its message */

@@ -100,6 +100,32 @@ START_TEST(gravity_and_planes_have_mirror_images) {
 }
 END_TEST
 
+/* A part of a job and its mirror image about y = 0. */
+static const char *const mirrors[][2] = {
+    {"{\"load\":{\"gravity\":[0,\"9.8 m/s2\",1]}}", "{\"load\":{\"gravity\":[0,\"-9.8 m/s2\",1]}}"},
+    {"{\"load\":{\"gravity\":[0,\"-9.8 m/s2\",1]}}", "{\"load\":{\"gravity\":[0,\"9.8 m/s2\",1]}}"},
+    {"{\"load\":{\"gravity\":[0,\"+1 m/s2\",1]}}", "{\"load\":{\"gravity\":[0,\"-1 m/s2\",1]}}"},
+    {"{\"load\":{\"gravity\":[0,\"0 m/s2\",1]}}", "{\"load\":{\"gravity\":[0,\"0 m/s2\",1]}}"},
+    {"{\"planes\":[{\"point\":[0,2,0],\"normal\":[0,0.5,1]}]}",
+     "{\"planes\":[{\"point\":[0,-2,0],\"normal\":[0,-0.5,1]}]}"},
+    {"{\"load\":{\"pressure\":{\"left\":1}}}", "{\"load\":{\"pressure\":{\"right\":1}}}"},
+    {"{\"actuator\":{\"taper\":{\"left\":1,\"right\":2}}}",
+     "{\"actuator\":{\"taper\":{\"left\":2,\"right\":1}}}"},
+    {"{\"actuator\":{\"taper\":{\"right\":2}}}", "{\"actuator\":{\"taper\":{\"left\":2}}}"},
+    {"{\"sensitivity\":false,\"load\":{}}", "{\"sensitivity\":false,\"load\":{}}"},
+};
+
+START_TEST(what_lies_across_changes_sides) {
+  json_t *document = json_loads(mirrors[_i][0], 0, NULL);
+  json_t *wanted = json_loads(mirrors[_i][1], 0, NULL);
+  json_t *mirrored = job_mirror(document);
+  ck_assert_msg(mirrored && json_equal(mirrored, wanted), "%s", mirrors[_i][0]);
+  json_decref(mirrored);
+  json_decref(wanted);
+  json_decref(document);
+}
+END_TEST
+
 START_TEST(derivatives_have_no_mirror_image) {
   struct job_spec spec;
   struct study study;
@@ -261,6 +287,7 @@ END_TEST
 
 #define LIST(set)                                                                                  \
   STUDY("\"sampling\":\"list\",\"designs\":[{\"set\":{}},{\"name\":\"B\",\"set\":" set "}]")
+#define X50 "xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx"
 #define MANY(p) "{\"pointer\":\"/mesh/" p "\",\"values\":[1,2,3,4,5,6,7,8,9,10,11]}"
 
 static const struct {
@@ -291,6 +318,22 @@ static const struct {
      "leads nowhere"},
     {LIST("{\"/actuator/chambers/1/count\":1}"), STATUS_INVALID,
      "/designs/1/set/~1actuator~1chambers~11~1count", "leads nowhere"},
+    {LIST("{\"/load/gravity/x\":0}"), STATUS_INVALID, "/designs/1/set/~1load~1gravity~1x",
+     "one of the 3 items"},
+    {LIST("{\"/load/gravity/\":0}"), STATUS_INVALID, "/designs/1/set/~1load~1gravity~1",
+     "one of the 3 items"},
+    {LIST("{\"/load/gravity/1234567\":0}"), STATUS_INVALID,
+     "/designs/1/set/~1load~1gravity~11234567", "one of the 3 items"},
+    {LIST("{\"/load/gravity/2\":null}"), STATUS_INVALID, "/designs/1/set/~1load~1gravity~12",
+     "too short"},
+    {LIST("{\"/load/gravity/1\":\"1 m\"}"), STATUS_INVALID, "/designs/1/set/~1load~1gravity~11",
+     "acceleration"},
+    {LIST("{\"/actuator/~0~1\":1}"), STATUS_INVALID, "/designs/1/set/~1actuator~1~00~01",
+     "is not known here"},
+    {LIST("{\"/actuator/~\":1}"), STATUS_INVALID, "/designs/1/set/~1actuator~1~0",
+     "a ~ is written ~0"},
+    {LIST("{\"/" X50 X50 X50 "\":1}"), STATUS_INVALID, "/designs/1/set/~1" X50 X50 X50,
+     "that a job can have"},
     {LIST("{\"/load/gravity/3\":0}"), STATUS_INVALID, "/designs/1/set/~1load~1gravity~13",
      "one of the 3 items"},
     {LIST("{\"/kind\":\"study\"}"), STATUS_INVALID, "/designs/1/set/~1kind",
@@ -311,7 +354,7 @@ static const struct {
      STATUS_INVALID, "/parameters/0/values/1", "member \"mass -1 g\", /model/mass: "},
     {HYBRIDS("\"sampling\":\"grid\",\"parameters\":[" MASSES(
          "\"1 g\"") "],\"ranking\":{\"stations\":[\"8 mm\"]}"),
-     STATUS_INVALID, "/ranking", "not \"hlpv\""},
+     STATUS_INVALID, "/ranking", "of the kind \"hlpv\""},
     {HYBRIDS("\"sampling\":\"list\",\"designs\":[{\"set\":{\"/kind\":\"response\"}}]"),
      STATUS_INVALID, "/designs/0/set/~1kind", "the kind of its base"},
     {HYBRIDS("\"sampling\":\"list\",\"keep\":\"all\",\"designs\":[{\"set\":{}}]"), STATUS_INVALID,
@@ -336,6 +379,7 @@ int main(void) {
   tcase_add_test(tcase, a_grid_has_every_combination);
   tcase_add_test(tcase, mirror_images_are_found);
   tcase_add_test(tcase, gravity_and_planes_have_mirror_images);
+  tcase_add_loop_test(tcase, what_lies_across_changes_sides, 0, sizeof mirrors / sizeof *mirrors);
   tcase_add_test(tcase, derivatives_have_no_mirror_image);
   tcase_add_test(tcase, one_at_a_time_keeps_the_rest);
   tcase_add_test(tcase, designs_are_listed);
