@@ -9,26 +9,20 @@
 
 enum { WORDS_MAX = 64 };
 
-static bool is_integral(const json_t *value) {
-  return json_is_integer(value) ||
-         (json_is_real(value) && json_real_value(value) == floor(json_real_value(value)));
-}
-
 bool schema_has_type(const json_t *value, const char *type) {
-  switch (type[0]) {
-  case 'o':
-    return json_is_object(value);
-  case 'a':
-    return json_is_array(value);
-  case 's':
-    return json_is_string(value);
-  case 'b':
-    return json_is_boolean(value);
-  case 'i':
-    return is_integral(value);
-  default:
-    return json_is_number(value);
+  static const char *const types[] = {
+      [JSON_OBJECT] = "object",   [JSON_ARRAY] = "array", [JSON_STRING] = "string",
+      [JSON_INTEGER] = "integer", [JSON_REAL] = "number", [JSON_TRUE] = "boolean",
+      [JSON_FALSE] = "boolean",   [JSON_NULL] = "null",
+  };
+  json_type own = json_typeof(value);
+  if (strcmp(type, types[own]) == 0) {
+    return true;
   }
+  /* Numbers without a fraction are integers, and integers are numbers. */
+  return own == JSON_INTEGER ? strcmp(type, "number") == 0
+                             : own == JSON_REAL && strcmp(type, "integer") == 0 &&
+                                   json_real_value(value) == floor(json_real_value(value));
 }
 
 /* ---- quantities ------------------------------------------------------------------------- */

@@ -229,10 +229,8 @@ static enum status read_transitions(const struct reader *reader, const json_t *t
 
 static enum status read_initial(const struct reader *reader, const json_t *value,
                                 struct hlpv_spec *spec) {
-  const json_t *mode = json_object_get(value, "mode");
-  enum status status =
-      mode ? find_mode(reader, spec, json_string_value(mode), "/initial/mode", &spec->initial_mode)
-           : STATUS_OK;
+  const char *mode = json_string_value(json_object_get(value, "mode"));
+  enum status status = find_mode(reader, spec, mode, "/initial/mode", &spec->initial_mode);
   for (int i = 0; i < HLPV_STATES; i++) {
     spec->initial[i] = reader_member(reader, value, quantity_keys[i], quantity_units[i], 0.0);
   }

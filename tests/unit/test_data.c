@@ -257,7 +257,7 @@ static const struct refusal bad_measured[] = {
     {"/measured", MEASURED("p,a\\n0,0\\n1,x\\n", P, A), STATUS_INVALID, "/measured/data/csv",
      "line 3"},
     {"/measured", MEASURED("p,a\\n100,1\\n200,2\\n", P, A), STATUS_INVALID, "/measured/data/csv",
-     "nothing in common with the load, 0 to 50 kPa"},
+     "nothing in common with the load: 0 to 50 kPa"},
     {"/measured",
      MEASURED("Pressure,Angle\\n0,0\\n", "{\"name\":\"Angle\",\"unit\":\"kPa\"}",
               "{\"name\":\"Pressure\",\"unit\":\"deg\"}"),

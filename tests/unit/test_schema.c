@@ -49,6 +49,19 @@ static const struct {
     {"{\"type\": \"integer\"}", "1"},
     {"{\"type\": \"integer\"}", "1.0"},
     {"{\"const\": 0}", "0.0"},
+    {"{\"type\": \"null\"}", "null"},
+    {"{\"type\": \"boolean\"}", "true"},
+    {"{\"const\": \"a\"}", "\"a\""},
+    {"{\"enum\": [\"a\", 2, null]}", "2"},
+    {"{\"enum\": [\"a\", 2, null]}", "null"},
+    {"{\"maximum\": 1}", "[]"},
+    {"{\"maxLength\": 2}", "[\"a rule for strings alone\"]"},
+    {"{\"minItems\": 2}", "\"a rule for arrays alone\""},
+    {"{\"maxItems\": 0}", "\"a rule for arrays alone\""},
+    {"{\"required\": [\"a\"], \"maxProperties\": 0}", "\"a rule for objects alone\""},
+    {"{\"properties\": {\"a\": {\"const\": 1}}, \"items\": {\"const\": 1}}", "5"},
+    {"{\"oneOf\": [{\"const\": 1}, {\"const\": \"a\"}]}", "1.0"},
+    {"{\"oneOf\": [{\"type\": \"null\"}, {\"type\": \"array\"}]}", "null"},
     {"{\"enum\": [\"a\", \"b\"]}", "\"b\""},
     {"{\"minimum\": 1, \"maximum\": 2}", "1"},
     {"{\"minimum\": 1, \"maximum\": 2}", "2"},
@@ -123,6 +136,30 @@ static const struct {
      "the number 5 has no unit: it must be a length with its unit; for example \"5 mm\""},
     {QUANTITY, "\"5\"", "", "for example \"5 mm\""},
     {QUANTITY, "\"5 kPa\"", "", "a length is wanted"},
+    {"{\"type\": \"number\"}", "null", "", "null is not possible here: it must be a number"},
+    {"{\"type\": \"null\"}", "0", "", "the number 0"},
+    {"{\"type\": \"integer\"}", "true", "", "true is not possible here"},
+    {"{\"const\": 3}", "false", "", "false"},
+    {"{\"const\": \"a\"}", "\"b\"", "", "it must be \"a\""},
+    {"{\"enum\": [\"a\", 2]}", "\"c\"", "", "\"a\""},
+    {"{\"enum\": [2, 3]}", "1.5", "", "the number 1.5 is not"},
+    {"{\"exclusiveMinimum\": 1}", "1", "", "above 1"},
+    {"{\"exclusiveMaximum\": 1}", "1", "", "below 1"},
+    {"{\"exclusiveMinimum\": 1, \"exclusiveMaximum\": 3}", "3", "", "above 1 and below 3"},
+    {"{\"minItems\": 2, \"items\": {\"type\": \"number\"}}", "[]", "", "for example [1, 1]"},
+    {"{\"maxItems\": 1}", "[1, 2]", "", "2 items is too long"},
+    {"{\"maxProperties\": 1}", "{\"a\": 1, \"b\": 2}", "", "2 members is too large"},
+    {"{\"required\": [\"a\"]}", "{}", "", "the key \"a\" is missing: it must be any value"},
+    {"{\"required\": [\"a\"], \"properties\": {\"a\": {\"enum\": [7]}}}", "{}", "", "{\"a\": 7}"},
+    {"{\"required\": [\"a\"], \"properties\": {\"a\": {\"type\": \"boolean\"}}}", "{}", "",
+     "true or false; for example {\"a\": true}"},
+    {"{\"required\": [\"a\"], \"properties\": {\"a\": {\"type\": \"object\", \"required\": "
+     "[\"b\"], \"properties\": {\"b\": {\"minimum\": 4}}}}}",
+     "{}", "", "for example {\"a\": {\"b\": 4}}"},
+    {"{\"propertyNames\": {\"maxLength\": 1}}", "{\"ab\": 1}", "/ab", "2 characters is too long"},
+    {"{\"additionalProperties\": {\"const\": 1}}", "{\"ab\": 2}", "/ab", "it must be 1"},
+    {"{\"x-unit\": \"mm\", \"x-maximum\": \"1 cm\"}", "\"90\"", "", "has no unit"},
+    {QUANTITY, "null", "", "null is not possible here"},
     {QUANTITY, "[5]", "", "it must be a length with its unit; for example \"1 mm\""},
     {"{\"x-unit\": \"mm\", \"x-minimum\": \"1 cm\"}", "\"9 mm\"", "", "at least 1 cm"},
     {"{\"x-unit\": \"mm\", \"x-maximum\": \"1 cm\"}", "\"11 mm\"", "", "at most 1 cm"},
@@ -154,6 +191,8 @@ static const char *const broken[] = {
     "{\"$ref\": \"#/$defs/a\", \"$defs\": {\"a\": {\"$ref\": \"#/$defs/a\"}}}",
     "{\"properties\": {\"a\": {\"format\": \"date\"}}}",
     "{\"items\": 3}",
+    "{\"$ref\": \"other.json\"}",
+    "{\"$defs\": {\"a\": {\"patern\": \"x\"}}}",
     "{\"oneOf\": [{\"maximun\": 1}]}",
 };
 
@@ -161,6 +200,27 @@ START_TEST(a_schema_with_a_rule_that_nobody_enforces_is_refused) {
   struct schema *schema = NULL;
   ck_assert_int_eq(schema_create(broken[_i], strlen(broken[_i]), units, &schema, NULL),
                    STATUS_INTERNAL);
+}
+END_TEST
+
+/* A limit that is no quantity of its unit is the schema's mistake, not that of the job. */
+START_TEST(a_limit_of_another_kind_is_an_internal_error) {
+  struct error error = {.status = STATUS_OK};
+  ck_assert_int_eq(check_text("{\"x-unit\": \"mm\", \"x-minimum\": \"1 kPa\"}", "\"1 mm\"", &error),
+                   STATUS_INTERNAL);
+}
+END_TEST
+
+/* Nobody wants to know: the same answers. */
+START_TEST(checks_without_a_sentence) {
+  struct schema *schema = NULL;
+  ck_assert_int_eq(
+      schema_create(refused[_i].schema, strlen(refused[_i].schema), units, &schema, NULL),
+      STATUS_OK);
+  json_t *value = json_loads(refused[_i].value, JSON_DECODE_ANY, NULL);
+  ck_assert_int_eq(schema_check(schema, value, NULL), STATUS_INVALID);
+  json_decref(value);
+  schema_destroy(schema);
 }
 END_TEST
 
@@ -241,6 +301,8 @@ int main(void) {
   tcase_add_loop_test(tcase, refuses, 0, sizeof refused / sizeof *refused);
   tcase_add_loop_test(tcase, a_schema_with_a_rule_that_nobody_enforces_is_refused, 0,
                       sizeof broken / sizeof *broken);
+  tcase_add_test(tcase, a_limit_of_another_kind_is_an_internal_error);
+  tcase_add_loop_test(tcase, checks_without_a_sentence, 0, sizeof refused / sizeof *refused);
   tcase_add_test(tcase, fills_defaults_at_every_level);
   tcase_add_test(tcase, examples_of_the_job_schema_follow_it);
   suite_add_tcase(suite, tcase);
