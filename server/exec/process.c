@@ -12,14 +12,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { REPORT_FD = 3 };
+enum { REPORT_FD = 3, USAGE_FD = 4, CHILD_FILES = 5 };
 enum { ARGUMENTS_MAX = 2 * (2 * ISOLATION_PATHS_MAX + 1) + 48, NUMBER_SIZE = 24 };
 
 /* The command line of the launcher. */
 struct command {
   const char *argv[ARGUMENTS_MAX];
   size_t count;
-  char numbers[8][NUMBER_SIZE];
+  char numbers[9][NUMBER_SIZE];
   size_t number_count;
 };
 
@@ -49,6 +49,7 @@ static void command_make(struct command *command, const char *const *argv, const
   command_add(command, isolation->launcher);
   command_number(command, "--parent", (uint64_t)getpid());
   command_number(command, "--report", REPORT_FD);
+  command_number(command, "--usage", USAGE_FD);
   command_number(command, "--memory", limits->memory_bytes);
   command_number(command, "--cpu", limits->cpu_s);
   command_number(command, "--file", limits->file_bytes);
@@ -75,8 +76,8 @@ static void command_make(struct command *command, const char *const *argv, const
 }
 
 /* Between fork and exec in a program with threads: async-signal-safe calls only. files: standard
- * input, output, error, and where to report. */
-static int child_prepare(pid_t parent, const int files[4]) {
+ * input, output, error, where to report, and where to tell what was used. */
+static int child_prepare(pid_t parent, const int files[CHILD_FILES]) {
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, NULL);
@@ -85,24 +86,24 @@ static int child_prepare(pid_t parent, const int files[4]) {
   if (setpgid(0, 0) != 0 || prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() != parent) {
     return errno ? errno : ESRCH;
   }
-  for (int i = 0; i < 4; i++) { /* the daemon has descriptors 0 to 2 open: nothing is run over */
-    if (dup2(files[i], i) < 0) {
+  /* The daemon has descriptors 0 to 2 open; both pipes first go where nothing is run over. */
+  int report = fcntl(files[REPORT_FD], F_DUPFD_CLOEXEC, CHILD_FILES);
+  int used = fcntl(files[USAGE_FD], F_DUPFD_CLOEXEC, CHILD_FILES);
+  const int sources[CHILD_FILES] = {files[0], files[1], files[2], report, used};
+  for (int i = 0; i < CHILD_FILES; i++) {
+    if (dup2(sources[i], i) < 0) {
       return errno;
     }
   }
-  close_range(REPORT_FD + 1, ~0U, CLOSE_RANGE_CLOEXEC);
-  return fcntl(REPORT_FD, F_SETFD, 0) == 0 ? 0 : errno; /* it may have been there already */
+  close_range(CHILD_FILES, ~0U, CLOSE_RANGE_CLOEXEC);
+  return 0;
 }
 
 /* Forks and executes; what prevents the start comes as a sentence through a pipe, which a success
  * closes. */
-static enum status process_fork(const struct command *command, int files[4],
-                                struct process *process, struct error *error) {
-  int report[2];
+static enum status process_fork(const struct command *command, int files[CHILD_FILES],
+                                const int report[2], struct process *process, struct error *error) {
   char sentence[400];
-  if (pipe2(report, O_CLOEXEC) != 0) {
-    return error_set(error, STATUS_IO, NULL, "Cannot create a pipe: %s.", strerrordesc_np(errno));
-  }
   files[REPORT_FD] = report[1];
   pid_t parent = getpid();
   pid_t pid = fork();
@@ -118,7 +119,6 @@ static enum status process_fork(const struct command *command, int files[4],
   int fork_reason = errno;
   close(report[1]);
   if (pid < 0) {
-    close(report[0]);
     return error_set(error, STATUS_IO, NULL, "Cannot start a process: %s.",
                      strerrordesc_np(fork_reason));
   }
@@ -126,7 +126,6 @@ static enum status process_fork(const struct command *command, int files[4],
   do {
     got = read(report[0], sentence, sizeof sentence - 1);
   } while (got < 0 && errno == EINTR);
-  close(report[0]);
   if (got > 0) {
     sentence[got] = '\0';
     waitpid(pid, NULL, 0);
@@ -136,13 +135,37 @@ static enum status process_fork(const struct command *command, int files[4],
   return STATUS_OK;
 }
 
+static enum status process_launch(const struct command *command, int files[CHILD_FILES],
+                                  struct process *process, struct error *error) {
+  int report[2], used[2];
+  if (pipe2(report, O_CLOEXEC) != 0) {
+    return error_set(error, STATUS_IO, NULL, "Cannot create a pipe: %s.", strerrordesc_np(errno));
+  }
+  if (pipe2(used, O_CLOEXEC | O_NONBLOCK) != 0) {
+    int reason = errno;
+    close(report[0]);
+    close(report[1]);
+    return error_set(error, STATUS_IO, NULL, "Cannot create a pipe: %s.", strerrordesc_np(reason));
+  }
+  files[USAGE_FD] = used[1];
+  enum status status = process_fork(command, files, report, process, error);
+  close(report[0]);
+  close(used[1]);
+  if (status == STATUS_OK) {
+    process->used = used[0];
+  } else {
+    close(used[0]);
+  }
+  return status;
+}
+
 enum status process_start(const char *const *argv, const char *output_path, const char *error_path,
                           const char *directory, const struct process_limits *limits,
                           const struct isolation *isolation, struct process *process,
                           struct error *error) {
   int flags = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW;
-  int files[4] = {open("/dev/null", O_RDONLY | O_CLOEXEC), open(output_path, flags, 0644),
-                  open(error_path, flags | O_APPEND, 0644), -1};
+  int files[CHILD_FILES] = {open("/dev/null", O_RDONLY | O_CLOEXEC), open(output_path, flags, 0644),
+                            open(error_path, flags | O_APPEND, 0644), -1, -1};
   enum status status;
   struct command command;
   if (files[0] < 0 || files[1] < 0 || files[2] < 0) {
@@ -150,7 +173,7 @@ enum status process_start(const char *const *argv, const char *output_path, cons
                        NULL, "Cannot create %s: %s.", output_path, strerrordesc_np(errno));
   } else {
     command_make(&command, argv, directory, limits, isolation);
-    status = process_fork(&command, files, process, error);
+    status = process_launch(&command, files, process, error);
   }
   for (int i = 0; i < 3; i++) {
     if (files[i] >= 0) {
@@ -158,6 +181,15 @@ enum status process_start(const char *const *argv, const char *output_path, cons
     }
   }
   return status;
+}
+
+/* Largest resident set in MB as the launcher told it; 0 when it was killed before it could. What
+ * the kernel tells of the launcher itself would begin with the size of the daemon it came from. */
+static double peak_memory(int used) {
+  int64_t kilobytes = 0;
+  bool told = read(used, &kilobytes, sizeof kilobytes) == (ssize_t)sizeof kilobytes;
+  close(used);
+  return told ? (double)kilobytes / 1024 : 0.0;
 }
 
 bool process_wait(struct process *process, int timeout_ms, struct process_end *end) {
@@ -179,12 +211,12 @@ bool process_wait(struct process *process, int timeout_ms, struct process_end *e
     end->signal = WIFSIGNALED(state) ? WTERMSIG(state) : 0;
     end->cpu_s = (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
                  1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
-    end->peak_memory_MB = (double)usage.ru_maxrss / 1024;
   }
+  end->peak_memory_MB = peak_memory(process->used);
   if (process->pidfd >= 0) {
     close(process->pidfd);
   }
-  *process = (struct process){.pid = -1, .pidfd = -1};
+  *process = (struct process){.pid = -1, .pidfd = -1, .used = -1};
   return true;
 }
 

@@ -22,6 +22,7 @@ struct process_limits {
 struct process {
   pid_t pid; /* of its launcher, which ends last and as the worker did */
   int pidfd;
+  int used;    /* where the launcher tells what the worker used */
   bool ending; /* its end has been demanded */
 };
 
@@ -29,7 +30,7 @@ struct process_end {
   int exit_code; /* -1 when a signal ended it */
   int signal;    /* 0 when it exited */
   double cpu_s;
-  double peak_memory_MB;
+  double peak_memory_MB; /* largest resident set of any of its processes; 0: not known */
 };
 
 /* Starts argv[0] (looked up in PATH when it has no slash), standard input empty, standard output

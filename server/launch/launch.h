@@ -25,6 +25,7 @@ struct launch {
   bool namespaces, landlock, seccomp; /* means of isolation to use */
   pid_t parent;                       /* the daemon; -1: not checked */
   int report;                         /* descriptor for a sentence when the worker cannot start */
+  int usage;                          /* descriptor for what the worker used; -1: none */
   char **argv;                        /* of the worker, ended by NULL */
 };
 

@@ -29,6 +29,7 @@ static const char usage[] =
     "  --nice N          priority\n"
     "  --parent PID      end when this is not, or no longer, the parent\n"
     "  --report FD       where to say why the worker could not be started\n"
+    "  --usage FD        where to tell its largest resident set: kilobytes in 8 bytes\n"
     "Exit status: that of the worker, or 127.\n";
 
 enum { ROOM_FOR_SOLVER = 1 };
@@ -93,6 +94,9 @@ static bool option_take(struct launch *launch, int code, const char *value) {
   case 'R':
     launch->report = (int)number_of(value);
     return true;
+  case 'U':
+    launch->usage = (int)number_of(value);
+    return true;
   default:
     return false;
   }
@@ -144,10 +148,11 @@ int main(int argc, char **argv) {
                                           {"nice", required_argument, NULL, 'n'},
                                           {"parent", required_argument, NULL, 'P'},
                                           {"report", required_argument, NULL, 'R'},
+                                          {"usage", required_argument, NULL, 'U'},
                                           {"probe", no_argument, NULL, 'T'},
                                           {"help", no_argument, NULL, 'h'},
                                           {0}};
-  struct launch launch = {.parent = -1, .report = STDERR_FILENO};
+  struct launch launch = {.parent = -1, .report = STDERR_FILENO, .usage = -1};
   int code;
   while ((code = getopt_long(argc, argv, "+", options, NULL)) != -1) {
     if (code == 'T') {

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -112,12 +113,25 @@ static pid_t worker_start(const struct launch *launch) {
   return pid;
 }
 
+/* Tells the largest resident set of the worker and of what it waited for. */
+static void usage_tell(const struct launch *launch) {
+  struct rusage usage = {0};
+  getrusage(RUSAGE_CHILDREN, &usage);
+  int64_t kilobytes = usage.ru_maxrss;
+  if (launch->usage >= 0) {
+    ssize_t ignored = write(launch->usage, &kilobytes, sizeof kilobytes);
+    (void)ignored; /* then it is not known */
+  }
+}
+
 /* The first process of the namespace. When it ends the kernel kills and reaps all others there. */
 static int namespace_main(const struct launch *launch, const sigset_t *signals) {
   prctl(PR_SET_PDEATHSIG, (unsigned long)SIGKILL, 0UL, 0UL, 0UL);
   namespaces_limit_processes(launch->processes);
   pid_t worker = worker_start(launch);
-  return worker > 0 ? child_watch(worker, -worker, signals) : STATUS_NOT_STARTED;
+  int status = worker > 0 ? child_watch(worker, -worker, signals) : STATUS_NOT_STARTED;
+  usage_tell(launch);
+  return status;
 }
 
 static int supervise_namespace(const struct launch *launch, const sigset_t *signals) {
@@ -160,6 +174,7 @@ int launch_supervise(const struct launch *launch) {
   }
   pid_t worker = worker_start(launch);
   int status = worker > 0 ? child_watch(worker, -worker, &signals) : STATUS_NOT_STARTED;
+  usage_tell(launch);
   orphans_end();
   return status;
 }
