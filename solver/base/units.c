@@ -280,7 +280,8 @@ static size_t name_length(const char *text) {
   }
 }
 
-/* Length of the exponent at the start of `text`, of one digit: "2", "-2", "^-2", or raised. */
+/* Length of the exponent at the start of `text`, of one digit: "2", "-2", "^-2", or raised. Not 0:
+ * that would read "3W0 mm" as 3 mm. */
 static size_t exponent_length(const char *text) {
   static const char *const digits[] = {"\xC2\xB9", "\xC2\xB2", "\xC2\xB3"};
   size_t minus = strncmp(text, "\xE2\x81\xBB", 3) == 0 ? 3 : 0;
@@ -291,7 +292,7 @@ static size_t exponent_length(const char *text) {
   }
   size_t sign = text[0] == '^';
   sign += text[sign] == '-';
-  return isdigit((unsigned char)text[sign]) ? sign + 1 : 0;
+  return text[sign] >= '1' && text[sign] <= '9' ? sign + 1 : 0;
 }
 
 /* Length of what multiplies or divides at the start of `text`: spaces, or a sign with or without

@@ -272,7 +272,7 @@ static const struct {
 } refused[] = {
     {", \"hinge_length\": \"1.5 mm\"", "", "/actuator/hinge_length", "too short"},
     {", \"hinge_length\": \"1 um\"", "", "/actuator/hinge_length", "1.562 mm"},
-    {", \"pairs\": 64", "", "/actuator/pairs", "at most 8"},
+    {", \"pairs\": 64", "", "/actuator/pairs", "from 1 to 8"},
     {", \"hinge_wall\": \"0.3 mm\"", "", "/actuator/hinge_wall", "at least 0.35 mm"},
     {", \"supporting_slant\": \"8 mm\"", "", "/actuator/supporting_slant", "7.921371 mm"},
     {", \"supporting_pet\": \"9 mm\"", "", "/actuator/supporting_pet", "do not fit"},
@@ -300,7 +300,7 @@ static const struct {
     {"",
      ", \"calibrate\": {\"pointer\": \"/actuator/snapping_slant\", \"target\": \"34.9 kPa\", "
      "\"from\": \"6 mm\", \"to\": \"4 mm\"}",
-     "/calibrate/to", "must rise"},
+     "/calibrate/to", "not above"},
     {"",
      ", \"calibrate\": {\"pointer\": \"/actuator/snapping_slant\", \"target\": \"34.9 kPa\", "
      "\"from\": \"4 mm\", \"to\": \"60 mm\"}",
@@ -325,7 +325,7 @@ END_TEST
 static const struct {
   const char *key, *value, *pointer, *phrase;
 } replaced[] = {
-    {"snapping_angle", "60 deg", "/actuator/snapping_angle", "smaller than the 55 deg"},
+    {"snapping_angle", "60 deg", "/actuator/snapping_angle", "than the 55 deg"},
     {"snapping_slant", "25 mm", "/actuator/snapping_slant", "21.3503 mm"},
     {"snapping_slant", "0.01 mm", "/actuator/snapping_slant", "too short"},
     {"outer_diameter", "8 mm", "/actuator/snapping_slant", "across the axis"},

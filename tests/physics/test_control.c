@@ -442,7 +442,7 @@ static const struct {
     {"\"control\": {" REFERENCE ", " LIMITS ", \"rate\": \"10 kHz\"}, \"end\": \"1000 s\"",
      "/control/rate", "10000000 samples"},
     {"\"control\": {\"reference\": {}, " LIMITS "}, \"end\": \"1 s\"", "/control/reference",
-     "\"sine\" is wanted, not 0"},
+     "\"linear\" and \"sine\""},
     {"\"control\": {\"reference\": {\"hold\": [[\"0 s\", \"5 mm\"], [\"0 s\", \"6 mm\"]]}, " LIMITS
      "}, \"end\": \"1 s\"",
      "/control/reference/hold/1/0", "times must rise"},

@@ -191,7 +191,7 @@ let accepted = 0;
 let verdicts = 0;
 let pointers = 0;
 documents.forEach((document, i) => {
-  const [ours, sentence] = lines[i].split('\t');
+  const [ours, sentence] = JSON.parse(lines[i]);
   const valid = verdictOf(document);
   accepted += valid;
   if (valid !== (ours === 'ok')) {

@@ -49,12 +49,13 @@ function readUnit(text) {
     rest = rest.slice(2);
   }
   for (;;) {
-    const factor = /^([A-Za-zµ]+|°|%)(?:\^?(-?\d))?/.exec(rest);
+    const factor = /^([A-Za-zµ]+|°|%)(?:\^?(-?[1-9])|(⁻?[¹²³]))?/.exec(rest);
     const unit = factor ? unitOf(factor[1]) : null;
     if (!unit) {
       return null;
     }
-    const power = sign * Number(factor[2] ?? 1);
+    const raised = factor[3]?.replace(/./g, (digit) => '-123'['⁻¹²³'.indexOf(digit)]);
+    const power = sign * Number(factor[2] ?? raised ?? 1);
     scale *= unit[0] ** power;
     unit[1].forEach((exponent, i) => { dimension[i] += exponent * power; });
     rest = rest.slice(factor[0].length);

@@ -1,5 +1,5 @@
-/* check_lines SCHEMA.json: reads one JSON document a line from standard input and prints for each
- * "ok", or the pointer, a tab and the message with which the schema checker refuses it. */
+/* check_lines SCHEMA.json: reads one JSON document a line from standard input and prints for each a
+ * line ["ok", ""], or the pointer and the message with which the schema checker refuses it. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -14,11 +14,11 @@ static void check_line(const struct schema *schema, const char *line, size_t siz
     status = schema_check(schema, document, &error);
     json_decref(document);
   }
-  if (status == STATUS_OK) {
-    puts("ok");
-  } else {
-    printf("%s\t%s\n", error.pointer, error.message);
-  }
+  bool good = status == STATUS_OK;
+  json_t *answer = json_pack("[s, s]", good ? "ok" : error.pointer, good ? "" : error.message);
+  json_dumpf(answer, stdout, JSON_COMPACT); /* keys may have line feeds */
+  putchar('\n');
+  json_decref(answer);
 }
 
 int main(int argc, char **argv) {

@@ -152,7 +152,7 @@ END_TEST
 static const struct refusal refusals[] = {
     {"/actuator/gap_shape", "\"W\"", STATUS_INVALID, "/actuator/gap_shape", "\"trapezoidal\""},
     {"/actuator/gap_root", "\"0 mm\"", STATUS_INVALID, "/actuator/gap_root", "at least 1 um"},
-    {"/actuator/gap_root", "0.2", STATUS_INVALID, "/actuator/gap_root", "write \"0.2 mm\""},
+    {"/actuator/gap_root", "0.2", STATUS_INVALID, "/actuator/gap_root", "for example \"0.2 mm\""},
 };
 
 START_TEST(gap_refusals) {
@@ -163,8 +163,8 @@ END_TEST
 static const struct {
   const char *shape, *key, *value, *phrase;
 } limits[] = {
-    {"\"V\"", "/actuator/gap_root", "\"2.1 mm\"", "2.1 mm wide at the root but only 2 mm"},
-    {"\"U\"", "/actuator/gap_round", "\"9.7 mm\"", "which are 9.6 mm high"},
+    {"\"V\"", "/actuator/gap_root", "\"2.1 mm\"", "at most chamber_gap, 2 mm"},
+    {"\"U\"", "/actuator/gap_round", "\"9.7 mm\"", "at most their height, 9.6 mm"},
 };
 
 START_TEST(gap_limits) {
@@ -288,7 +288,7 @@ static const struct refusal sucker_refusals[] = {
     {"/actuator/suckers", AT("40 mm", ""), STATUS_INVALID, "/actuator/suckers/0",
      "\"diameter\" is missing"},
     {"/actuator/suckers", AT("40 mm", ", \"diameter\": 20"), STATUS_INVALID,
-     "/actuator/suckers/0/diameter", "write \"20 mm\""},
+     "/actuator/suckers/0/diameter", "for example \"20 mm\""},
     {"/actuator/suckers", AT("40 mm", ", \"diameter\": \"0 mm\""), STATUS_INVALID,
      "/actuator/suckers/0/diameter", "at least 1 um"},
     {"/actuator/suckers", "{}", STATUS_INVALID, "/actuator/suckers", "must be an array"},

@@ -118,6 +118,8 @@ static const struct {
     {"5 \xE2\x82\xACmm", "mm", "unknown unit"},
     {"1 m99999999999", "mm", "\"1 mm\""},
     {"1 \xFF", "mm", "unknown unit"},
+    {"3W0 mm", "mm", "unknown unit"},
+    {"6(m)0 g", "kg", "unknown unit"},
     {"1 (((((((((((((((((((((((((((m))))))))))))))))))))))))))", "mm", "unknown unit"},
     {"1 mmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmm", "mm", "longer than 64"},
 };
