@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 #include "solver/job/embed.h"
 #include "solver/job/json.h"
 #include "solver/run.h"
@@ -172,6 +173,10 @@ static int report(const struct error *error) {
   json_set_error(problem, error);
   print_document(
       json_pack("{s:s, s:o}", "status", invalid ? "invalid" : "error", "error", problem));
+  if (error->status == STATUS_NO_MEMORY) { /* at exit OpenBLAS would wait for ever for memory */
+    fflush(NULL);
+    _exit(EXIT_INTERNAL);
+  }
   return invalid ? EXIT_INVALID_JOB : EXIT_INTERNAL;
 }
 
