@@ -1,11 +1,6 @@
 /* Any bytes over a connection of the running daemon, which is a thread of this program: answered
  * with HTTP or closed, never with an internal error, never worse. A byte 0xFF parts what is sent
  * at once. The daemon's workers end without a result. */
-int pneulabd_main(int argc, char **argv);
-#define main pneulabd_main /* the daemon as a function */
-#include "server/main.c"
-#undef main
-
 #include <arpa/inet.h>
 #include <ctype.h>
 #include <dirent.h>
@@ -14,8 +9,14 @@ int pneulabd_main(int argc, char **argv);
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <pthread.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
+#include "server/daemon.h"
 #include "tests/fuzz/fuzz.h"
 
 enum { IDLE_MS = 40, ANSWER_MAX = 1 << 16 };
@@ -43,7 +44,7 @@ static void *run_daemon(void *argument) {
                        "off",         "--retry-delay",
                        "3600",        "--connections-per-address",
                        "1000",        NULL};
-  pneulabd_main(sizeof arguments / sizeof *arguments - 1, arguments);
+  daemon_run(sizeof arguments / sizeof *arguments - 1, arguments);
   abort(); /* it could not start */
 }
 

@@ -1,19 +1,23 @@
 /* Memory that runs out at every allocation while a job is read and submitted: a plain answer, no
  * crash, no leak (the sanitizer's), a sound database, and the next job is taken. NO_MEMORY_STRIDE:
  * how many allocations to go on from one to the next, 1 for all of them. */
-int pneulabd_main(int argc, char **argv);
-#define main pneulabd_main /* the daemon as a function */
-#include "server/main.c"
-#undef main
-
 #include <arpa/inet.h>
 #include <errno.h>
 #include <ftw.h>
 #include <pthread.h>
+#include <signal.h>
 #include <sqlite3.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <time.h>
+#include <unistd.h>
 
+#include "server/daemon.h"
+#include "solver/job/spec.h"
 #include "tests/unit/no_memory.h"
 
 #define ACTUATOR                                                                                   \
@@ -129,7 +133,7 @@ static void *run_daemon(void *argument) {
                        "127.0.0.1:0", "--solver",        "/bin/true", "--launcher",
                        argument,      "--isolation",     "off",       "--workers",
                        "1",           "--drain-timeout", "0",         NULL};
-  pneulabd_main(sizeof arguments / sizeof *arguments - 1, arguments);
+  daemon_run(sizeof arguments / sizeof *arguments - 1, arguments);
   return NULL;
 }
 
