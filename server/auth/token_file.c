@@ -14,8 +14,7 @@
 
 #include "server/base/clock.h"
 #include "server/base/file.h"
-
-enum { FILE_MAX = 1 << 20 };
+#include "solver/job/json.h"
 
 static const char token_characters[] =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._@-";
@@ -85,20 +84,38 @@ static struct token *list_grow(struct token_list *list) {
 
 /* ---- the file ---------------------------------------------------------------------------- */
 
-static bool token_read(const json_t *entry, struct token_list *list) {
+/* Adds what an entry describes. STATUS_SYNTAX when it describes no token, STATUS_NO_MEMORY. */
+static enum status token_read(const json_t *entry, struct token_list *list) {
   const char *name, *role, *hash, *created;
   struct token *token = list_grow(list);
+  if (!token && list->count < TOKENS_MAX) {
+    return STATUS_NO_MEMORY;
+  }
   if (!token ||
       json_unpack((json_t *)entry, "{s:s, s:s, s:s, s:s !}", "name", &name, "role", &role, "sha256",
                   &hash, "created", &created) != 0 ||
       !name_is_allowed(name) || list_find(list, name) || !role_parse(role, &token->role) ||
       !hash_parse(hash, token->hash) || strlen(created) >= sizeof token->created) {
-    return false;
+    return STATUS_SYNTAX;
   }
   strcpy(token->name, name);
   strcpy(token->created, created);
   list->count++;
-  return true;
+  return STATUS_OK;
+}
+
+static enum status tokens_parse(const char *text, size_t size, struct token_list *list) {
+  json_t *root = NULL;
+  enum status status = json_text_read(text, size, &root, NULL);
+  const json_t *tokens = json_object_get(root, "tokens");
+  if (status == STATUS_OK && !json_is_array(tokens)) {
+    status = STATUS_SYNTAX;
+  }
+  for (size_t i = 0; status == STATUS_OK && i < json_array_size(tokens); i++) {
+    status = token_read(json_array_get(tokens, i), list);
+  }
+  json_decref(root);
+  return status;
 }
 
 enum status token_file_read(const char *data, struct token_list *list, struct error *error) {
@@ -109,25 +126,23 @@ enum status token_file_read(const char *data, struct token_list *list, struct er
   if (!token_file_path(data, path, sizeof path)) {
     return error_set(error, STATUS_TOO_LARGE, NULL, "The path of the data directory is too long.");
   }
-  enum status status = file_read(path, FILE_MAX, &text, &size, error);
+  enum status status = file_read(path, JSON_TEXT_MAX, &text, &size, error);
   if (status != STATUS_OK) {
     return status;
   }
-  json_t *root = json_loadb(text, size, JSON_REJECT_DUPLICATES, NULL);
-  const json_t *tokens = json_object_get(root, "tokens");
-  bool fine = json_is_array(tokens);
-  for (size_t i = 0; fine && i < json_array_size(tokens); i++) {
-    fine = token_read(json_array_get(tokens, i), list);
-  }
-  if (!fine) {
+  status = tokens_parse(text, size, list);
+  if (status != STATUS_OK) {
     token_list_clear(list);
+  }
+  if (status == STATUS_NO_MEMORY) {
+    error_set(error, status, NULL, "No memory to read %s.", path);
+  } else if (status != STATUS_OK) {
     status = error_set(error, STATUS_SYNTAX, NULL,
                        "%s is damaged: expected {\"tokens\": [{\"name\", \"role\", \"sha256\", "
                        "\"created\"}, ...]} with names that differ, as `pneulabd token add` "
                        "writes it. Restore it, or remove it and make new tokens.",
                        path);
   }
-  json_decref(root);
   free(text);
   return status;
 }

@@ -1,5 +1,6 @@
 #include "server/exec/outcome.h"
 
+#include <errno.h>
 #include <limits.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -108,6 +109,10 @@ static bool outcome_read(struct outcome *outcome, const char *path, struct error
   }
   json_error_t reason;
   outcome->result = json_read(outcome->result_text, size, JSON_REJECT_DUPLICATES, &reason);
+  if (!outcome->result && errno == ENOMEM) {
+    error_set(error, STATUS_NO_MEMORY, NULL, "There is no memory for the solver's answer.");
+    return false;
+  }
   if (!json_is_object(outcome->result)) {
     error_set(error, STATUS_SYNTAX, NULL, "The solver printed no JSON object: %s (line %d).",
               outcome->result ? "another value" : reason.text, reason.line);

@@ -10,6 +10,7 @@
 #include "server/base/clock.h"
 #include "server/base/log.h"
 #include "server/http/feed_ring.h"
+#include "solver/job/json.h"
 
 enum {
   RETRY_MS = 2000,       /* after which a client is to connect again */
@@ -111,13 +112,14 @@ static void feed_resume(struct feed *feed, bool all) {
 struct reading {
   struct feed_entry entries[READ_EVENTS];
   int count;
+  bool starved; /* there was no memory for the next one */
 };
 
 static bool reading_take(void *context, const struct job_event *event) {
   struct reading *reading = context;
-  bool made = feed_entry_make(&reading->entries[reading->count], event);
-  reading->count += made;
-  return made;
+  reading->starved = !feed_entry_make(&reading->entries[reading->count], event);
+  reading->count += !reading->starved;
+  return !reading->starved;
 }
 
 /* Reports that were taken before the table is read next: so nobody sees a job progress before it
@@ -156,8 +158,9 @@ static bool publish_events(struct feed *feed) {
       log_line("cannot read events: %s", error.message);
     }
   }
+  bool complete = status == STATUS_OK && !reading->starved;
   free(reading);
-  return status == STATUS_OK;
+  return complete;
 }
 
 /* Waits for something to do. Under the mutex. */
@@ -216,7 +219,11 @@ struct catching_up {
 static bool catch_up_take(void *context, const struct job_event *event) {
   struct catching_up *to = context;
   const struct event_filter *filter = &to->subscriber->filter;
-  json_t *labels = filter->label_count > 0 ? json_loads(event->labels, 0, NULL) : NULL;
+  json_t *labels = NULL;
+  if (filter->label_count > 0 &&
+      json_text_read(event->labels, strlen(event->labels), &labels, NULL) == STATUS_NO_MEMORY) {
+    return false; /* to be asked for again: without its labels it would be passed over */
+  }
   bool wanted = event_filter_match(filter, event->job_id, labels);
   json_decref(labels);
   if (wanted) {

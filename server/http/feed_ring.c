@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "solver/job/json.h"
+
 /* The last attempt whose reports the event makes obsolete. */
 static int64_t report_end(const struct job_event *event) {
   enum job_state state;
@@ -25,8 +27,11 @@ bool feed_entry_make(struct feed_entry *entry, const struct job_event *event) {
     return false;
   }
   memcpy(entry->text, text, size);
-  if (strcmp(event->labels, "{}") != 0) {
-    entry->labels = json_loads(event->labels, 0, NULL);
+  if (strcmp(event->labels, "{}") != 0 &&
+      json_text_read(event->labels, strlen(event->labels), &entry->labels, NULL) ==
+          STATUS_NO_MEMORY) {
+    feed_entry_clear(entry); /* without its labels those who wait for them would miss it */
+    return false;
   }
   return true;
 }

@@ -2,11 +2,13 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "server/base/clock.h"
 #include "server/http/answers.h"
 #include "server/http/event_text.h"
 #include "server/plot/plot.h"
+#include "solver/job/json.h"
 
 enum { KEPT_SIZE_MAX = 16384 };
 
@@ -46,7 +48,7 @@ static json_t *result_read(const struct service *service, const struct job_recor
   json_t *result = NULL;
   if (record->has_result &&
       store_result(service->store, record->id, &text, &directory, NULL) == STATUS_OK) {
-    result = json_loads(text, 0, NULL);
+    result = json_read(text, strlen(text), 0, NULL);
   }
   free(text);
   free(directory);

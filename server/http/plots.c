@@ -6,6 +6,7 @@
 #include "server/http/cache.h"
 #include "server/http/handlers.h"
 #include "server/plot/plot.h"
+#include "solver/job/json.h"
 
 enum { OVERLAY_MAX = 12, WIDTH = 800, HEIGHT = 600, SIDE_MIN = 320, SIDE_MAX = 2400 };
 
@@ -33,7 +34,7 @@ static enum status drawing_read(const struct service *service, int64_t id, struc
   if (status == STATUS_OK) {
     int length = snprintf(drawing->artifacts_dir, sizeof drawing->artifacts_dir, "%s/%s/out",
                           service->data, directory);
-    drawing->result = json_loads(text, 0, NULL);
+    drawing->result = json_read(text, strlen(text), 0, NULL);
     drawing->tag = cache_tag_add(cache_tag(), text, strlen(text));
     drawing->tag = cache_tag_add(drawing->tag, drawing->record.name, strlen(drawing->record.name));
     if (!drawing->result || length < 0 || (size_t)length >= sizeof drawing->artifacts_dir) {

@@ -7,6 +7,7 @@
 
 #include "server/http/cache.h"
 #include "server/http/handlers.h"
+#include "solver/job/json.h"
 
 /* The job's result document; otherwise replies why there is none and returns false. */
 static bool result_read(const struct request *request, struct reply *reply, int64_t *id,
@@ -136,9 +137,9 @@ void result_samples(struct request *request, struct reply *reply) {
     free(text);
     return;
   }
-  json_t *result = json_loads(text, 0, NULL);
+  json_t *result = json_read(text, strlen(text), 0, NULL);
   free(text);
-  char *csv = samples_csv(json_object_get(result, "samples"), &size);
+  char *csv = result ? samples_csv(json_object_get(result, "samples"), &size) : NULL;
   json_decref(result);
   reply_text(reply, "text/csv; charset=utf-8", csv, size);
   if (csv) {

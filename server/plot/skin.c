@@ -1,5 +1,6 @@
 #include "server/plot/skin.h"
 
+#include <errno.h>
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
@@ -9,11 +10,32 @@
 
 #include "server/base/file.h"
 #include "server/plot/data.h"
+#include "solver/job/json.h"
 
 enum { FILE_LIMIT = 64 << 20 };
 
 static enum status damaged(struct error *error, const char *what) {
   return error_set(error, STATUS_SYNTAX, NULL, "surface.json is damaged: %s", what);
+}
+
+static enum status no_memory(struct error *error) {
+  return error_set(error, STATUS_NO_MEMORY, NULL, "memory ran out for surface.json");
+}
+
+static enum status parse(FILE *file, size_t size, json_t **root, struct error *error) {
+  json_error_t problem;
+  char *text = malloc(size + 1);
+  if (!text) {
+    return no_memory(error);
+  }
+  size = fread(text, 1, size, file);
+  *root = json_read(text, size, JSON_REJECT_DUPLICATES, &problem);
+  bool starved = !*root && errno == ENOMEM;
+  free(text);
+  if (*root) {
+    return STATUS_OK;
+  }
+  return starved ? no_memory(error) : damaged(error, problem.text);
 }
 
 static enum status load(const char *directory, json_t **root, struct error *error) {
@@ -28,12 +50,11 @@ static enum status load(const char *directory, json_t **root, struct error *erro
     return error_set(error, STATUS_NOT_FOUND, NULL,
                      "the job left no surface.json to draw the deformed body from");
   }
-  json_error_t problem;
   if (size > FILE_LIMIT) {
     status = error_set(error, STATUS_TOO_LARGE, NULL,
                        "surface.json has %zu bytes; up to %d are drawn", size, FILE_LIMIT);
-  } else if (!(*root = json_loadf(file, JSON_REJECT_DUPLICATES, &problem))) {
-    status = damaged(error, problem.text);
+  } else {
+    status = parse(file, size, root, error);
   }
   fclose(file);
   return status;
@@ -46,7 +67,7 @@ static enum status read_quads(const json_t *list, struct skin *skin, struct erro
   }
   skin->quads = malloc(skin->quad_count * sizeof *skin->quads);
   if (!skin->quads) {
-    return error_set(error, STATUS_NO_MEMORY, NULL, "memory ran out for surface.json");
+    return no_memory(error);
   }
   for (size_t i = 0; i < skin->quad_count; i++) {
     const json_t *quad = json_array_get(list, i);
@@ -73,7 +94,7 @@ static enum status read_points(const json_t *state, struct skin *skin, struct sk
   }
   *points = malloc(skin->point_count * sizeof **points);
   if (!*points) {
-    return error_set(error, STATUS_NO_MEMORY, NULL, "memory ran out for surface.json");
+    return no_memory(error);
   }
   for (size_t i = 0; i < skin->point_count; i++) {
     const json_t *p = json_array_get(list, i);
@@ -94,7 +115,7 @@ static enum status read_stretch(const json_t *state, struct skin *skin, struct e
   }
   skin->stretch = malloc(skin->point_count * sizeof *skin->stretch);
   if (!skin->stretch) {
-    return error_set(error, STATUS_NO_MEMORY, NULL, "memory ran out for surface.json");
+    return no_memory(error);
   }
   for (size_t i = 0; i < skin->point_count; i++) {
     skin->stretch[i] = data_element(list, i);

@@ -2,6 +2,7 @@
 
 #include "server/store/connection.h"
 #include "server/store/sql.h"
+#include "solver/job/json.h"
 
 /* Called by SQLite for every row that the writer changes, under the writer's mutex. */
 static void event_written(void *context, int operation, const char *database, const char *table,
@@ -88,7 +89,8 @@ enum status store_labels(struct store *store, int64_t id, json_t **labels, struc
     status = sql_step(statement, &row, error);
   }
   if (status == STATUS_OK && row) {
-    *labels = json_loads(sql_text(statement, 0), 0, NULL);
+    const char *text = sql_text(statement, 0);
+    status = json_text_read(text, strlen(text), labels, error);
   }
   sql_done(statement);
   store_read_end(store, db);

@@ -1,8 +1,10 @@
 #include <stdlib.h>
+#include <string.h>
 
 #include "server/base/clock.h"
 #include "server/store/connection.h"
 #include "server/store/sql.h"
+#include "solver/job/json.h"
 
 /* A succeeded job with its result, and for whom. */
 struct answer {
@@ -38,12 +40,13 @@ static enum status answer_find(sqlite3 *db, int64_t id, struct answer *answer,
     status = sql_step(statement, &row, error);
   }
   if (status == STATUS_OK && row) {
+    const char *names = sql_text(statement, 3);
     *answer = (struct answer){.job_id = sqlite3_column_int64(statement, 0),
                               .solved_by = sqlite3_column_int64(statement, 1),
                               .asker = id,
                               .attempt = sqlite3_column_int64(statement, 4),
                               .directory = sql_text_copy(statement, 2),
-                              .names = json_loads(sql_text(statement, 3), 0, NULL)};
+                              .names = json_read(names, strlen(names), 0, NULL)};
     if (!answer->directory || !answer->names) {
       status = error_set(error, STATUS_NO_MEMORY, NULL, "No memory for a result.");
     }
