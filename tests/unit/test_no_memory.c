@@ -129,10 +129,10 @@ static void write_launcher(char *path, size_t size) {
 }
 
 static void *run_daemon(void *argument) {
-  char *arguments[] = {"pneulabd",    "--data",          directory,   "--listen",
-                       "127.0.0.1:0", "--solver",        "/bin/true", "--launcher",
-                       argument,      "--isolation",     "off",       "--workers",
-                       "1",           "--drain-timeout", "0",         NULL};
+  char *arguments[] = {"pneulabd",    "--data",    directory,    "--listen",        "127.0.0.1:0",
+                       "--solver",    "/bin/true", "--launcher", argument,          "--isolation",
+                       "off",         "--workers", "1",          "--drain-timeout", "0",
+                       "--log-level", "error",     NULL};
   daemon_run(sizeof arguments / sizeof *arguments - 1, arguments);
   return NULL;
 }
