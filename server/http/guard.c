@@ -103,7 +103,8 @@ bool guard_host_is_loopback(const char *authority) {
 static bool guard_framing(const struct header_scan *scan, const char *coding, struct reply *reply) {
   if (scan->bad_line) {
     return refuse(reply, 400, "malformed_header",
-                  "A line of the header is folded, has a NUL byte, or does not end with CR LF.");
+                  "A line of the header is folded, has a NUL byte or no name, or does not end "
+                  "with CR LF.");
   }
   if (scan->bad_name || scan->bad_value) {
     return refuse(reply, 400, "malformed_header",
@@ -193,9 +194,19 @@ static bool guard_origin(const struct request *request, const char *host, struct
   return true;
 }
 
-bool guard_check(const struct request *request, const char *version, struct reply *reply) {
+/* Whether the header ends with CR LF right after its last line. A line that begins with a colon
+ * ends it for libmicrohttpd, too: what follows would be a request of its own. */
+static bool end_is_blank(const struct request *request, const char *method, const char *expected) {
+  const union MHD_ConnectionInfo *info =
+      MHD_get_connection_info(request->connection, MHD_CONNECTION_INFO_REQUEST_HEADER_SIZE);
+  return info && expected && method + info->header_size == expected + 2 && expected[1] == '\0';
+}
+
+bool guard_check(const struct request *request, const char *method, const char *version,
+                 struct reply *reply) {
   struct header_scan scan = {.expected = version + strlen(version) + 2};
   MHD_get_connection_values_n(request->connection, MHD_HEADER_KIND, header_scan_one, &scan);
+  scan.bad_line = scan.bad_line || !end_is_blank(request, method, scan.expected);
   const char *host = request_header(request, "Host");
   return guard_framing(&scan, request_header(request, "Transfer-Encoding"), reply) &&
          guard_host(request, &scan, version, host, reply) && guard_origin(request, host, reply);

@@ -147,7 +147,7 @@ static void exchange_open(struct exchange *exchange, const char *method, const c
     reply->close = true;
     return;
   }
-  if (!guard_check(request, version, reply) ||
+  if (!guard_check(request, method, version, reply) ||
       !access_identify(request, exchange->connections, exchange_connection(exchange), reply)) {
     return;
   }

@@ -34,6 +34,8 @@ raw "fragment" 400 closed "GET /healthz#x HTTP/1.1\r\n$H\r\n"
 raw "NUL in the target" 400 closed "GET /healthz\0x HTTP/1.1\r\n$H\r\n"
 raw "encoded NUL" 400 closed "GET /healthz%%00 HTTP/1.1\r\n$H\r\n"
 raw "encoded way up" 400 closed "GET /%%2e%%2e/%%2e%%2e/etc/passwd HTTP/1.1\r\n$H\r\n"
+raw "HTTP/1.0 without a host" 200 closed "GET /healthz HTTP/1.0\r\n\r\n"
+raw "HTTP/1.0 with the host in the target" 200 closed "GET http://localhost/healthz HTTP/1.0\r\n\r\n"
 raw "folded header" 400 closed "GET /healthz HTTP/1.1\r\n$H folded: x\r\n\r\n"
 raw "unknown version" 505 closed "GET /healthz HTTP/2.0\r\n$H\r\n"
 raw "asterisk" 400 closed "OPTIONS * HTTP/1.1\r\n$H\r\n"
@@ -56,6 +58,14 @@ raw "a folded coding" 400 closed "${P}Transfer-Encoding:\r\n chunked\r\nContent-
 raw "a folded length" 400 closed "${P}Content-Length:\r\n\t2\r\n\r\n{}"
 raw "a first line that is folded" 400 closed "GET /healthz HTTP/1.1\r\n X: y\r\n$H\r\n"
 raw "a line without a colon" 400 closed "GET /healthz HTTP/1.1\r\n${H}nonsense\r\n\r\n"
+for line in ': x' : ':\t' ':: x' ': Content-Length: 5'; do
+  answer=$(printf "GET /healthz HTTP/1.1\r\n${H}$line\r\nGET /readyz HTTP/1.1\r\n$H\r\n" | "$RAW" "$PORT" | tr -d '\r\0')
+  check "the line '$line' does not end a header" "HTTP/1.1 400 Bad Request" "$(grep '^HTTP' <<< "$answer")"
+done
+raw "a line without a name, not the last" 400 closed "GET /healthz HTTP/1.1\r\n: x\r\n$H\r\n"
+raw "a bare LF after the header" 400 closed "GET /healthz HTTP/1.1\r\n$H\n"
+raw "DEL in a value" 400 closed "GET /healthz HTTP/1.1\r\n${H}X: a\x7fb\r\n\r\n"
+raw "blanks before a value" 200 open "GET /healthz HTTP/1.1\r\nX: \t y\r\n$H\r\n"
 raw "coding identity and a length" 400 closed "${P}Transfer-Encoding: identity\r\nContent-Length: 2\r\n\r\n{}"
 for coding in identity 'chunked, chunked' xchunked '"chunked"' 'chunked;q=1' 'chunked\t' ''; do
   raw "coding '$coding'" 501 closed "${P}Transfer-Encoding: $coding\r\n\r\n0\r\n\r\n"
@@ -115,6 +125,32 @@ fetch DELETE /api/v1/jobs/1 -H 'Origin: http://evil.example'
 check "foreign DELETE" 403 "$CODE"
 fetch POST /api/v1/jobs:validate -H "Origin: $URL" -H 'Sec-Fetch-Site: same-origin' --data-binary "$(job)"
 check "our own page" 200 "$CODE"
+fetch DELETE /api/v1/jobs/1 -H 'Sec-Fetch-Site: same-origin' -b a=b
+check "our own page without its origin" 404 "$CODE"
+fetch GET /healthz -H 'Sec-Fetch-Site: none'
+check "typed by hand" 200 "$CODE"
+
+# Numbers and lists in queries and headers.
+for query in jobs= jobs=0x1 jobs=1,1,2 jobs=1,,2 jobs=1, jobs=,1 jobs=01 'jobs=1;2' jobs=99999999999999999999 \
+  "jobs=$(seq -s, 51)"; do
+  fetch GET "/api/v1/compare?$query"
+  check "compare?${query:0:30}" "400 invalid_query" "$CODE $(field .code)"
+done
+for method_path in 'PATCH /api/v1/jobs/x' 'POST /api/v1/jobs/0x1/retry' 'GET /api/v1/jobs/01' 'DELETE /api/v1/jobs/-1' \
+  'POST /api/v1/jobs/1a/cancel' 'GET /api/v1/jobs/99999999999999999999'; do
+  fetch "${method_path% *}" "${method_path#* }"
+  check "$method_path" "404 not_found" "$CODE $(field .code)"
+done
+key=(-H 'Idempotency-Key: once' --data-binary "$(job)")
+fetch POST /api/v1/jobs -H 'Prefer: wait=20' "${key[@]}"
+for wait in wait=20 'respond-async, wait=20' 'wait=20; x' WAIT=20; do
+  fetch POST /api/v1/jobs -H "Prefer: $wait" "${key[@]}"
+  check "Prefer: $wait" "succeeded wait=20" "$(field .state) $(header Preference-Applied)"
+done
+for wait in xwait=20 wait= wait=x wait=20x wait=-1 wait 'w ait=20'; do
+  fetch POST /api/v1/jobs -H "Prefer: $wait" "${key[@]}"
+  check "Prefer: $wait is passed over" "succeeded " "$(field .state) $(header Preference-Applied)"
+done
 
 # A header, and then a body, that trickle in.
 start=$SECONDS
