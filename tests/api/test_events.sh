@@ -72,12 +72,15 @@ done
 
 # HEAD ends, and leaves no subscriber behind.
 check "HEAD" '200 text/event-stream' "$(curl -sI "$URL/api/v1/events" | tr -d '\r' | awk '/^HTTP/{s = $2} /^Content-Type/{t = $2} END{print s, t}')"
-for bad in 'job=x' 'job=1,1' 'after=-1' 'since=3'; do
+for bad in job=x job=1,1 'job=' after=-1 after=x since=3 "$(seq -f 'label.x%g=1' -s '&' 17)" 'label.a=1&job=x'; do
   fetch GET "/api/v1/events?$bad"
   check "?$bad" '400 invalid_query' "$CODE $(field .code)"
 done
-fetch GET /api/v1/events -H 'Last-Event-ID: x'
-check "a Last-Event-ID that is none" '400 invalid_header' "$CODE $(field .code)"
+for bad in x -1 17x '17 18' 99999999999999999999; do
+  fetch GET /api/v1/events -H "Last-Event-ID: $bad"
+  check "Last-Event-ID: $bad" '400 invalid_header' "$CODE $(field .code)"
+done
+check "an empty Last-Event-ID is none" 200 "$(curl -sI -H 'Last-Event-ID;' -o /dev/null -w '%{http_code}' "$URL/api/v1/events")"
 
 # A restart with events before, in and after it: the streams end cleanly, nothing is lost.
 third=$(submit)

@@ -46,7 +46,8 @@ check "null removes" '{"c":"d"}' "$(field .labels)"
 check "the list knows the new label" "$raised" "$(curl -s "$URL/api/v1/jobs?label.c=d" | jq '.jobs[].id')"
 check "and no longer the old one" "" "$(curl -s "$URL/api/v1/jobs?label.a=b" | jq '.jobs[].id')"
 for wrong in '[]|422|' '{"priority": 101}|422|/priority' '{"priority": "x"}|422|/priority' '{"name": ""}|422|/name' \
-  '{"labels": {"x": 3}}|422|/labels/x' '{"labels": []}|422|/labels' '{"memory": "1 GB"}|422|/memory' '{|400|'; do
+  '{"labels": {"x": 3}}|422|/labels/x' '{"labels": []}|422|/labels' '{"labels": {"x": null, "y": 3}}|422|/labels/y' \
+  '{"memory": "1 GB"}|422|/memory' '{|400|'; do
   IFS='|' read -r body code pointer <<< "$wrong"
   fetch PATCH "/api/v1/jobs/$raised" --data-binary "$body"
   check "the patch $body" "$code $pointer" "$CODE $(field .pointer)"

@@ -62,6 +62,11 @@ for name in reader '' 'a b' '../x' "$(printf 'x%.0s' {1..64})"; do
 done
 check "a word that is no command" 2 "$(token list now > /dev/null; echo $?)"
 check "a role that is none" 2 "$(token add x --role root > /dev/null; echo $?)"
+check "a word that is none" 2 "$(token grant x > /dev/null; echo $?)"
+check "no word" 2 "$(token > /dev/null; echo $?)"
+check "its help" "0 usage:" "$(token --help > "$WORK/help"; echo "$? $(head -c 6 "$WORK/help")")"
+check "a directory that is a file" 1 "$("$BIN/pneulabd" token list --data "$DATA/tokens.json" 2> /dev/null; echo $?)"
+check "a path that is too long" 2 "$("$BIN/pneulabd" token list --data "$DATA/$(printf 'x/%.0s' {1..2040})" 2> /dev/null; echo $?)"
 
 # Each route asks for the role that the table and the description say, and for no less.
 declare -A secret=([NONE]='' [READ]=$reader [SUBMIT]=$submitter [ADMIN]=$admin)
@@ -181,12 +186,32 @@ as wrong GET /api/v1/caller -H 'X-Forwarded-For: 192.0.2.1, 203.0.113.9'
 check_match "the address that the proxy saw" 'wrong token from 203.0.113.9$' "$(tail -1 "$WORK/stderr")"
 as wrong GET /api/v1/caller -H 'X-Forwarded-For: nonsense'
 check_match "an address that is none" 'wrong token from 127.0.0.1$' "$(tail -1 "$WORK/stderr")"
+as wrong GET /api/v1/caller -H 'X-Forwarded-For: 2001:db8::7'
+check_match "one of IPv6" 'wrong token from 2001:db8::7$' "$(tail -1 "$WORK/stderr")"
+as wrong GET /api/v1/caller -H "X-Forwarded-For: $(printf '1%.0s' {1..200})"
+check_match "a long one" 'wrong token from 127.0.0.1$' "$(tail -1 "$WORK/stderr")"
+as wrong GET /api/v1/caller -H 'X-Forwarded-For;'
+check_match "an empty one" 'wrong token from 127.0.0.1$' "$(tail -1 "$WORK/stderr")"
 fetch POST /sign-in -H 'X-Forwarded-Proto: https' -H 'Host: lab.example' -H 'Origin: https://lab.example' \
   --data-urlencode "token=$admin"
 check_match "the cookie of a proxy that speaks TLS" '^__Host-pneulab=.*; Secure' "$(header Set-Cookie)"
 fetch POST /sign-in -H 'X-Forwarded-Proto: https' -H 'Host: lab.example' -H 'Origin: http://lab.example' \
   --data-urlencode "token=$admin"
 check "a page without TLS is another origin" 403 "$CODE"
+fetch POST '/sign-in?next=/jobs%3Fstate=held%26sort=name' -H 'X-Forwarded-For: 192.0.2.50' --data-raw 'x=1&token=wrong'
+check "a wrong token leads back to the form" '303 /sign-in?next=/jobs?state=held%26sort=name#failed' \
+  "$CODE $(header Location)"
+for form in '' token 'token=' 'x=y' 'token=%zz' 'token=%00' '&&=&token'; do
+  fetch POST /sign-in -H 'X-Forwarded-For: 192.0.2.50' --data-raw "$form"
+  check_match "the form '$form'" '^303 /sign-in.next=/#failed$' "$CODE $(header Location)"
+done
+for _ in 1 2; do
+  fetch POST /sign-in -H 'X-Forwarded-For: 192.0.2.50' --data-raw 'token=wrong'
+done
+fetch POST /sign-in -H 'X-Forwarded-For: 192.0.2.50' --data-raw 'token=wrong'
+check "too many wrong tokens in forms" "429 too_many_requests" "$CODE $(field .code)"
+fetch POST /sign-in --data-raw "a&=&token=$admin&token=wrong"
+check "the first field of that name counts" "303 /" "$CODE $(header Location)"
 pids=()
 for _ in 1 2; do
   curl -s -N -m 3 -o /dev/null -H "Authorization: Bearer $admin" -H 'X-Forwarded-For: 192.0.2.7' \

@@ -1,6 +1,7 @@
 /* Tokens in their file and in memory, buckets of requests, files below a directory. */
 #include <check.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -57,6 +58,7 @@ START_TEST(tokens_are_kept_as_hashes) {
 END_TEST
 
 #define HASH "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef"
+#define BAD_HASH "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdeF"
 #define ENTRY(NAME, ROLE, SUM)                                                                     \
   "{\"name\":\"" NAME "\",\"role\":\"" ROLE "\",\"sha256\":\"" SUM "\",\"created\":\"2026\"}"
 
@@ -72,6 +74,14 @@ static const char *const damaged[] = {
     "{\"tokens\":[" ENTRY("a", "read", "12") "]}",
     "{\"tokens\":[" ENTRY("a", "read", HASH "0") "]}",
     "{\"tokens\":[" ENTRY("a", "read", "g" HASH) "]}",
+    "{\"tokens\":[" ENTRY("a", "read", BAD_HASH) "]}",
+    "{\"tokens\":[{\"name\":\"a\",\"role\":\"read\",\"sha256\":\"" HASH
+    "\",\"created\":\"2026-01-01T00:00:00.000000000000000Z\"}]}",
+    "{\"tokens\":[{\"name\":\"a\",\"role\":\"read\",\"sha256\":\"" HASH
+    "\",\"created\":\"2026\",\"more\":1}]}",
+    "{\"tokens\":[],\"tokens\":[]}",
+    "{\"tokens\":[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]"
+    "}",
     "{\"tokens\":[" ENTRY("", "read", HASH) "]}",
     "{\"tokens\":[" ENTRY("a", "read", HASH) "," ENTRY("a", "admin", HASH) "]}",
     "{\"tokens\":[" ENTRY("a", "read", HASH) "]",
@@ -86,6 +96,61 @@ START_TEST(damaged_files_are_refused) {
   ck_assert_ptr_nonnull(strstr(error.message, "tokens.json"));
   ck_assert_uint_eq(list.count, 0);
   ck_assert_int_eq(tokens_create(data, false, &tokens, &error), STATUS_SYNTAX);
+}
+END_TEST
+
+START_TEST(tokens_have_their_limits) {
+  struct token_list list = {0}, read;
+  struct error error;
+  char secret[TOKEN_SECRET_SIZE], name[20], path[PATH_MAX + 10];
+  for (int i = 0; i < TOKENS_MAX; i++) {
+    snprintf(name, sizeof name, "name-%d", i);
+    ck_assert_int_eq(token_list_add(&list, name, ROLE_READ, secret, &error), STATUS_OK);
+  }
+  ck_assert_int_eq(token_list_add(&list, "more", ROLE_READ, secret, &error), STATUS_NO_MEMORY);
+  ck_assert_int_eq(token_file_write(data, &list, &error), STATUS_OK);
+  ck_assert_int_eq(token_file_read(data, &read, &error), STATUS_OK);
+  ck_assert_uint_eq(read.count, TOKENS_MAX);
+  token_list_clear(&read);
+  memset(path, 'x', sizeof path - 1); /* a path that no file can have */
+  path[sizeof path - 1] = '\0';
+  ck_assert_int_eq(token_file_read(path, &read, &error), STATUS_TOO_LARGE);
+  ck_assert_int_ne(token_file_write(path, &list, &error), STATUS_OK);
+  ck_assert_int_eq(token_file_write("/nowhere", &list, &error), STATUS_IO);
+  ck_assert_ptr_nonnull(strstr(error.message, "/nowhere/tokens.json"));
+  token_file_path(data, path, sizeof path);
+  write_tokens("{}");
+  ck_assert_int_eq(truncate(path, 2 << 20), 0);
+  ck_assert_int_eq(token_file_read(data, &read, &error), STATUS_TOO_LARGE);
+  unlink(path);
+  mkdir(path, 0700); /* in the place of the file */
+  ck_assert_int_eq(token_file_write(data, &list, &error), STATUS_IO);
+  snprintf(path, sizeof path, "%s/tokens.json.new", data);
+  ck_assert_int_eq(access(path, F_OK), -1); /* nothing is left behind */
+  token_list_clear(&list);
+}
+END_TEST
+
+/* A file that holds one token too many. */
+START_TEST(too_many_tokens_are_refused) {
+  struct token_list read;
+  struct error error;
+  char *text = NULL, path[200];
+  size_t size;
+  FILE *out = open_memstream(&text, &size);
+  ck_assert_ptr_nonnull(out);
+  for (int i = 0; i <= TOKENS_MAX; i++) {
+    fprintf(out, "%s{\"name\":\"n%d\",\"role\":\"read\",\"sha256\":\"" HASH "\",\"created\":\"\"}",
+            i == 0 ? "{\"tokens\":[" : ",", i);
+  }
+  fputs("]}", out);
+  fclose(out);
+  write_tokens(text);
+  ck_assert_int_eq(token_file_read(data, &read, &error), STATUS_SYNTAX);
+  ck_assert_uint_eq(read.count, 0);
+  free(text);
+  token_file_path(data, path, sizeof path);
+  unlink(path);
 }
 END_TEST
 
@@ -195,6 +260,8 @@ int main(void) {
   tcase_add_checked_fixture(tests, make_data, remove_data);
   tcase_add_test(tests, tokens_are_kept_as_hashes);
   tcase_add_loop_test(tests, damaged_files_are_refused, 0, sizeof damaged / sizeof *damaged);
+  tcase_add_test(tests, tokens_have_their_limits);
+  tcase_add_test(tests, too_many_tokens_are_refused);
   tcase_add_test(tests, tokens_follow_their_file);
   tcase_add_test(tests, buckets_run_dry_and_fill_again);
   tcase_add_test(tests, many_parties_do_not_empty_the_memory);
