@@ -4,10 +4,12 @@ import glob
 import re
 import subprocess
 
-FOLDERS = ("solver/base", "solver/job", "server/base", "server/http")
+FOLDERS = ("solver/base", "solver/job", "server/base", "server/auth", "server/exec", "server/http",
+           "server/plot")
 PARSERS = ("json json_memory schema schema_* spec spec_* embed study study_* trials steps tensile "
            "measured parameter mirror *_check bistable hlpv units table text error numbers url "
-           "request guard option options").split()
+           "request guard option options token_file token_command progress outcome route access "
+           "session events event_text cache jobs submission patch retry skin data").split()
 
 
 def branches(notes, source):
