@@ -33,9 +33,10 @@ def main():
             rows.append((counted[1], counted[0], source))
     for share, count, source in sorted(rows):
         print(f"{source:40} {count:6} {share:6.1f} %")
-    total = sum(count for _, count, _ in rows)
-    taken = sum(share * count for share, count, _ in rows)
-    print(f"{'all':40} {total:6} {taken / max(total, 1):6.1f} %")
+    for part in ("solver/", "server/", ""):
+        total = sum(count for _, count, source in rows if source.startswith(part))
+        taken = sum(share * count for share, count, source in rows if source.startswith(part))
+        print(f"{part + ' all':40} {total:6} {taken / max(total, 1):6.1f} %")
 
 
 main()

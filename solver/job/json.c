@@ -350,25 +350,6 @@ void json_text_locate(const char *text, size_t size, const char *pointer, int *l
   count_place(text, (size_t)(found - text), line, column);
 }
 
-const char *json_type_phrase(const json_t *value) {
-  switch (json_typeof(value)) {
-  case JSON_OBJECT:
-    return "an object";
-  case JSON_ARRAY:
-    return "an array";
-  case JSON_STRING:
-    return "a string";
-  case JSON_INTEGER:
-  case JSON_REAL:
-    return "a number";
-  case JSON_TRUE:
-  case JSON_FALSE:
-    return "true or false";
-  default:
-    return "null";
-  }
-}
-
 void json_set_finite(json_t *object, const char *key, double value) {
   if (isfinite(value)) {
     json_object_set_new(object, key, json_real(value));

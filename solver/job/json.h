@@ -47,7 +47,4 @@ void json_set_error(json_t *problem, const struct error *error);
 /* `count` texts, each in `size` bytes, as an array of strings; a new reference. */
 json_t *json_texts(const char *text, size_t size, int count);
 
-/* "an object", "a string", ... of a value. Static storage. */
-const char *json_type_phrase(const json_t *value);
-
 #endif

@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include "server/daemon.h"
+#include "solver/job/embed.h"
 #include "solver/job/spec.h"
 #include "tests/unit/no_memory.h"
 
@@ -28,6 +29,22 @@
   "{\"kind\": \"response\", \"labels\": {\"paper\": \"x\"}, \"actuator\": " ACTUATOR               \
   ", \"material\": \"dragon-skin-20\", \"load\": {\"pressure\": {\"to\": \"30 kPa\", \"steps\":"   \
   " 6}}}"
+
+#define BELLOWS                                                                                    \
+  "{\"family\": \"frustum-bellows\", \"outer_diameter\": \"40 mm\", \"wall\": \"2 mm\","           \
+  " \"snapping_angle\": \"40 deg\", \"supporting_angle\": \"55 deg\", \"pet_thickness\":"          \
+  " \"0.25 mm\", \"snapping_slant\": \"5 mm\"}"
+#define MODEL                                                                                      \
+  "\"model\": {\"mass\": \"2 kg\", \"gamma\": \"0.4 N/kPa\", \"modes\": {\"free\":"                \
+  " {\"stiffness\": \"400 N/m\", \"damping\": \"8 N s/m\", \"alpha\": \"-4 1/s\", \"beta\":"       \
+  " \"4 1/s\"}}}, \"initial\": {\"mode\": \"free\"}"
+#define HELD                                                                                       \
+  "{\"kind\": \"hlpv\", " MODEL                                                                    \
+  ", \"input\": {\"hold\": [[\"0 s\", \"20 kPa\"]]}, \"end\": \"2 s\"}"
+#define SPREAD(sampling, more)                                                                     \
+  "{\"kind\": \"study\", \"base\": " HELD ", \"sampling\": \"" sampling "\", \"size\": 2,"         \
+  " \"parameters\": [{\"pointer\": \"/model/mass\", \"from\": \"1 kg\", \"to\": \"2 kg\"},"        \
+  " {\"pointer\": \"/tolerance\", \"values\": [1e-6, 1e-7]}]" more "}"
 
 static const struct {
   const char *name, *text;
@@ -43,11 +60,32 @@ static const struct {
      "25,52\\n40,81\\n55,114\\n\"}, \"columns\": {\"strain\": {\"name\": \"e\", \"unit\": \"%\"},"
      " \"stress\": {\"name\": \"s\", \"unit\": \"kPa\"}}}",
      STATUS_OK},
-    {"hlpv",
-     "{\"kind\": \"hlpv\", \"model\": {\"mass\": \"2 kg\", \"gamma\": \"0.4 N/kPa\", \"modes\":"
-     " {\"free\": {\"stiffness\": \"400 N/m\", \"damping\": \"8 N s/m\", \"alpha\": \"-4 1/s\","
-     " \"beta\": \"4 1/s\"}}}, \"initial\": {\"mode\": \"free\"}, \"input\": {\"hold\": [[\"0 s\","
-     " \"20 kPa\"]]}, \"end\": \"2 s\"}",
+    {"hlpv", HELD, STATUS_OK},
+    {"motion",
+     "{\"kind\": \"snap\", \"actuator\": " BELLOWS ", \"silicone\": {\"model\": \"neo-hooke\","
+     " \"mu\": \"0.19 MPa\"}, \"load\": {\"law\": [\"0 kPa\", \"60 kPa\"]}, \"dynamics\":"
+     " {\"pairs\": 3, \"pair_mass\": \"12 g\", \"plate_mass\": \"30 g\", \"damping\": \"2 N s/m\","
+     " \"pneumatics\": {\"supply\": \"direct\"}}}",
+     STATUS_OK},
+    {"control",
+     "{\"kind\": \"hlpv\", " MODEL ", \"control\": {\"reference\": {\"hold\": [[\"0 s\","
+     " \"4 mm\"]]}, \"saturation\": [\"-5 psi\", \"8 psi\"]}, \"end\": \"2 s\"}",
+     STATUS_OK},
+    {"hypercube", SPREAD("latin-hypercube", ""), STATUS_OK},
+    {"sequence",
+     SPREAD("sobol", ", \"constraints\": [{\"sum\": {\"/model/mass\": 1}, \"at_most\": \"3 kg\"}]"),
+     STATUS_OK},
+    {"identification",
+     "{\"kind\": \"identify\", \"data\": {\"csv\": "
+     "\"t,u,h,p\\n0,9,0,0\\n1,9,3,3\\n2,9,5,5\\n3,9,7,7\\n"
+     "4,9,8,8\\n5,9,9,9\\n6,9,9,9\\n7,9,9,9\\n8,9,9,9\\n9,9,9,9\\n10,9,9,9\\n11,9,9,9\\n12,9,9,"
+     "9\\n13,9,9,9\\n\"}, \"columns\": {\"time\": "
+     "{\"name\": \"t\","
+     " \"unit\": \"s\"}, \"set_point\": {\"name\": \"u\", \"unit\": \"kPa\"}, \"h\": {\"name\": "
+     "\"h\","
+     " \"unit\": \"mm\"}, \"pressure\": {\"name\": \"p\", \"unit\": \"kPa\"}}, \"modes\": "
+     "[{\"name\":"
+     " \"free\", \"rest\": \"0 mm\"}]}",
      STATUS_OK},
     {"unknown word", "{\"kind\": \"verify\", \"case\": \"elastca\"}", STATUS_INVALID},
     {"missing key", "{\"kind\": \"response\", \"actuator\": " ACTUATOR "}", STATUS_INVALID},
@@ -95,6 +133,38 @@ static long read_all(const struct job_reader *reader, size_t index, bool onwards
   return place;
 }
 
+static void write_in_directory(const char *name, const char *text, char *path, size_t size) {
+  snprintf(path, size, "%s/%s", directory, name);
+  FILE *file = fopen(path, "w");
+  if (!file || fputs(text, file) == EOF || fclose(file) != 0) {
+    abort();
+  }
+}
+
+/* A study whose base is a file, which names a table, with a sign that is no UTF-8. */
+static long embed_all(void) {
+  static const char study[] = "{\"kind\": \"study\", \"base\": {\"file\": \"base.json\"}}";
+  char path[100];
+  long place = 1;
+  write_in_directory("curve.csv", "e,\xB0\n0,0\n1,1\n", path, sizeof path);
+  write_in_directory("base.json",
+                     "{\"kind\": \"fit-material\", \"data\": {\"file\": \"curve.csv\"}}", path,
+                     sizeof path);
+  for (bool failed = true; failed; place++) {
+    char *embedded = NULL;
+    size_t length = 0;
+    struct error error = {.status = STATUS_OK};
+    no_memory_arm(place, false);
+    enum status status = embed_files(study, strlen(study), path, &embedded, &length, &error);
+    failed = no_memory_disarm();
+    free(embedded);
+    if (status != STATUS_OK && (!failed || status != STATUS_NO_MEMORY)) {
+      fail("embedding", place, error.message);
+    }
+  }
+  return place;
+}
+
 static void create_all(void) {
   bool failed = true;
   for (long place = 1; failed; place++) {
@@ -120,10 +190,9 @@ static int remove_one(const char *path, const struct stat *info, int kind, struc
 /* A worker that ends when this file is removed, so that nobody else writes to the database before.
  */
 static void write_launcher(char *path, size_t size) {
-  snprintf(path, size, "%s/launcher", directory);
-  FILE *file = fopen(path, "w");
-  if (!file || fputs("#!/bin/sh\nwhile [ -e \"$0\" ]; do sleep 0.1; done\n", file) == EOF ||
-      fclose(file) != 0 || chmod(path, 0700) != 0) {
+  write_in_directory("launcher", "#!/bin/sh\nwhile [ -e \"$0\" ]; do sleep 0.1; done\n", path,
+                     size);
+  if (chmod(path, 0700) != 0) {
     abort();
   }
 }
@@ -251,6 +320,7 @@ int main(void) {
     places += read_all(reader, i, false) + read_all(reader, i, true);
   }
   job_reader_destroy(reader);
+  places += embed_all();
   printf("reading: %ld allocations\n", places);
   write_launcher(launcher, sizeof launcher);
   start_daemon(&daemon, launcher);

@@ -18,6 +18,7 @@
   "{\"pointer\":\"/model/modes/free/stiffness\",\"from\":\"100 N/m\",\"to\":\"10000 N/m\","        \
   "\"scale\":\"log\"}"
 #define DAMPING "{\"pointer\":\"/model/modes/free/damping\",\"values\":[\"10 N s/m\",\"20 N s/m\"]}"
+#define TOLERANCE "{\"pointer\":\"/tolerance\",\"from\":1e-6,\"to\":1e-4,\"scale\":\"log\"}"
 #define RATE "{\"pointer\":\"/sample_rate\",\"values\":[\"60 Hz\",\"120 Hz\",\"240 Hz\"]}"
 
 static struct job_reader *reader;
@@ -141,11 +142,77 @@ START_TEST(constraints_hold) {
 }
 END_TEST
 
+/* Numbers without a unit, whole where both ends are, and a constraint between numbers alone. */
+START_TEST(numbers_are_spread) {
+  struct job_spec spec;
+  struct study study;
+  expand(STUDY("\"sampling\":\"sobol\",\"size\":40,\"parameters\":[" TOLERANCE
+               ",{\"pointer\":\"/priority\",\"from\":-3,\"to\":3,\"scale\":\"linear\"}],"
+               "\"constraints\":[{\"sum\":{\"/priority\":1},\"at_least\":-2,\"at_most\":2}]"),
+         &spec, &study);
+  int seen[5] = {0};
+  for (size_t i = 0; i < study.count; i++) {
+    double tolerance = number_at(&study, i, "/tolerance"),
+           whole = number_at(&study, i, "/priority");
+    ck_assert(tolerance >= 1e-6 && tolerance <= 1e-4);
+    ck_assert(whole >= -2.0 && whole <= 2.0 && whole == floor(whole));
+    seen[(int)whole + 2]++;
+  }
+  for (int k = 0; k < 5; k++) {
+    ck_assert_int_gt(seen[k], 0);
+  }
+  study_release(&study);
+  job_spec_release(&spec);
+}
+END_TEST
+
 static const struct {
   const char *rest, *pointer, *phrase;
 } refusals[] = {
     {"\"sampling\":\"sobol\",\"parameters\":[" MASS "]", "", "\"size\" is missing"},
     {"\"sampling\":\"sobol\",\"size\":0,\"parameters\":[" MASS "]", "/size", "1"},
+    {"\"sampling\":\"sobol\",\"size\":10001,\"parameters\":[" MASS "]", "/size", "10000"},
+    {"\"sampling\":\"grid\",\"parameters\":[{\"pointer\":\"/model/mass\"}]", "/parameters/0",
+     "takes \"values\""},
+    {"\"sampling\":\"grid\",\"parameters\":[{\"pointer\":\"/model/mass\",\"values\":[\"1 g\"],"
+     "\"to\":\"2 g\"}]",
+     "/parameters/0", "takes \"values\""},
+    {"\"sampling\":\"grid\",\"parameters\":[{\"pointer\":\"/model/mass\",\"values\":[\"1 g\"],"
+     "\"from\":\"2 g\"}]",
+     "/parameters/0", "takes \"values\""},
+    {"\"sampling\":\"grid\",\"parameters\":[{\"pointer\":\"/model/mass\",\"values\":[\"1 g\"],"
+     "\"scale\":\"log\"}]",
+     "/parameters/0", "takes \"values\""},
+    {"\"sampling\":\"halton\",\"size\":4,\"parameters\":[{\"pointer\":\"/model/mass\",\"values\":"
+     "[\"1 g\"],\"scale\":\"log\"}]",
+     "/parameters/0", "either values"},
+    {"\"sampling\":\"halton\",\"size\":4,\"parameters\":[{\"pointer\":\"/model/mass\",\"values\":"
+     "[\"1 g\"],\"from\":\"1 g\",\"to\":\"2 g\"}]",
+     "/parameters/0", "either values"},
+    {"\"sampling\":\"halton\",\"size\":4,\"parameters\":[{\"pointer\":\"/tolerance\",\"from\":1e-6,"
+     "\"to\":\"1e-5\"}]",
+     "/parameters/0/to", "another way"},
+    {"\"sampling\":\"halton\",\"size\":4,\"parameters\":[{\"pointer\":\"/tolerance\",\"from\":"
+     "\"1e-6\",\"to\":1e-5}]",
+     "/parameters/0/to", "another way"},
+    {"\"sampling\":\"halton\",\"size\":4,\"parameters\":[{\"pointer\":\"/model/mass\",\"from\":"
+     "\"1 g\",\"to\":\"g\"}]",
+     "/parameters/0/to", "another way"},
+    {"\"sampling\":\"halton\",\"size\":4,\"parameters\":[{\"pointer\":\"/model/mass\",\"from\":"
+     "\"1e999 g\",\"to\":\"2 g\"}]",
+     "/parameters/0/from", "no number"},
+    {"\"sampling\":\"sobol\",\"size\":4,\"parameters\":[" TOLERANCE
+     "],\"constraints\":[{\"sum\":{\"/tolerance\":1},\"at_most\":\"8 mm\"}]",
+     "/constraints/0", "all numbers"},
+    {"\"sampling\":\"sobol\",\"size\":4,\"parameters\":[" MASS
+     "],\"constraints\":[{\"sum\":{\"/model/mass\":1},\"at_most\":8}]",
+     "/constraints/0", "all numbers"},
+    {"\"sampling\":\"sobol\",\"size\":4,\"parameters\":[" MASS
+     "],\"constraints\":[{\"sum\":{\"/model/mass\":1},\"at_least\":\"1 g\",\"at_most\":8}]",
+     "/constraints/0", "all numbers"},
+    {"\"sampling\":\"sobol\",\"size\":4,\"parameters\":[" MASS
+     "],\"constraints\":[{\"sum\":{\"/model/mass\":1},\"at_least\":\"1 g\",\"at_most\":\"8 mm\"}]",
+     "/constraints/0", "mm"},
     {"\"sampling\":\"grid\",\"size\":4,\"parameters\":[" RATE "]", "/size", "no use"},
     {"\"sampling\":\"grid\",\"parameters\":[" MASS "]", "/parameters/0", "takes \"values\""},
     {"\"sampling\":\"halton\",\"size\":4,\"designs\":[{\"set\":{}}],\"parameters\":[" MASS "]",
@@ -209,6 +276,7 @@ int main(void) {
   tcase_add_loop_test(tcase, a_larger_study_keeps_the_members_it_had, 1, 3);
   tcase_add_test(tcase, members_are_read_alone);
   tcase_add_test(tcase, constraints_hold);
+  tcase_add_test(tcase, numbers_are_spread);
   tcase_add_loop_test(tcase, bad_spreads_are_refused, 0, sizeof refusals / sizeof *refusals);
   tcase_set_timeout(tcase, 300);
   suite_add_tcase(suite, tcase);
