@@ -20,6 +20,7 @@ cd coverage
 [ -f Makefile ] || "$source_dir/configure" --quiet CFLAGS='-O0 --coverage' LDFLAGS=--coverage
 find . -name '*.gcda' -delete
 make -s -j"$(nproc)" WARN_CFLAGS=-w "${programs[@]}" > build.log
-NO_MEMORY_STRIDE=1 make -s WARN_CFLAGS=-w check-TESTS check_PROGRAMS= check_LIBRARIES= API_RECORD= TESTS="$*" \
+export NO_MEMORY_STRIDE=1
+make -s WARN_CFLAGS=-w check-TESTS check_PROGRAMS= check_LIBRARIES= API_RECORD= TESTS="$*" \
   > check.log 2>&1 || echo "some tests fail: see coverage/check.log"
 python3 "$source_dir/tests/coverage_table.py"

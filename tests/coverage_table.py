@@ -36,7 +36,7 @@ def main():
     for part in ("solver/", "server/", ""):
         total = sum(count for _, count, source in rows if source.startswith(part))
         taken = sum(share * count for share, count, source in rows if source.startswith(part))
-        print(f"{part + ' all':40} {total:6} {taken / max(total, 1):6.1f} %")
+        print(f"{(part + ' all').strip():40} {total:6} {taken / max(total, 1):6.1f} %")
 
 
 main()
