@@ -84,22 +84,29 @@ static struct token *list_grow(struct token_list *list) {
 
 /* ---- the file ---------------------------------------------------------------------------- */
 
-/* Adds what an entry describes. STATUS_SYNTAX when it describes no token, STATUS_NO_MEMORY. */
+/* A member of an entry, "" when it is no text. */
+static const char *entry_text(const json_t *entry, const char *key) {
+  const char *text = json_string_value(json_object_get(entry, key));
+  return text ? text : "";
+}
+
+/* Adds what an entry describes. STATUS_SYNTAX when it describes no token, STATUS_NO_MEMORY. Unlike
+ * json_unpack, this takes no memory but for the token. */
 static enum status token_read(const json_t *entry, struct token_list *list) {
-  const char *name, *role, *hash, *created;
+  const json_t *created = json_object_get(entry, "created");
+  const char *name = entry_text(entry, "name");
   struct token *token = list_grow(list);
   if (!token && list->count < TOKENS_MAX) {
     return STATUS_NO_MEMORY;
   }
-  if (!token ||
-      json_unpack((json_t *)entry, "{s:s, s:s, s:s, s:s !}", "name", &name, "role", &role, "sha256",
-                  &hash, "created", &created) != 0 ||
-      !name_is_allowed(name) || list_find(list, name) || !role_parse(role, &token->role) ||
-      !hash_parse(hash, token->hash) || strlen(created) >= sizeof token->created) {
+  if (!token || json_object_size(entry) != 4 || !name_is_allowed(name) || list_find(list, name) ||
+      !role_parse(entry_text(entry, "role"), &token->role) ||
+      !hash_parse(entry_text(entry, "sha256"), token->hash) || !json_is_string(created) ||
+      json_string_length(created) >= sizeof token->created) {
     return STATUS_SYNTAX;
   }
   strcpy(token->name, name);
-  strcpy(token->created, created);
+  strcpy(token->created, json_string_value(created));
   list->count++;
   return STATUS_OK;
 }

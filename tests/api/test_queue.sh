@@ -56,6 +56,8 @@ fetch PATCH "/api/v1/jobs/$first" --data-binary '{"priority": 1}'
 check "the priority of a running job" "409 conflict" "$CODE $(field .code)"
 fetch PATCH "/api/v1/jobs/$first" --data-binary '{"labels": {"seen": "yes"}}'
 check "the labels of a running job" '200 {"seen":"yes"}' "$CODE $(field .labels)"
+fetch PATCH "/api/v1/jobs/$first" --data-binary '{"name": null, "labels": null}'
+check "null for all of it" '200  {}' "$CODE $(field .name) $(field .labels)"
 fetch PATCH "/api/v1/jobs/4711" --data-binary '{}'
 check "a patch of no job" 404 "$CODE"
 touch "$WORK/go-waits-1"
@@ -81,7 +83,8 @@ fetch POST "/api/v1/jobs/$high/retry" -H 'Prefer: wait=20' --data-binary '{"reas
 check "a succeeded job is solved again" "200 $high twice is better 5" "$CODE $(field '"\(.retry_of) \(.retry_reason) \(.priority)"')"
 fetch POST "/api/v1/jobs/$raised/retry" -H 'Prefer: wait=20'
 check "with what was changed by hand" 'first of all 100 {"c":"d"}' "$(field '"\(.name) \(.priority) \(.labels | tojson)"')"
-for wrong in '{"why": 1}|422|/why' '{"reason": 3}|422|/reason' '[]|422|' 'x|400|'; do
+for wrong in '{"why": 1}|422|/why' '{"reason": 3}|422|/reason' '[]|422|' 'x|400|' \
+  "{\"reason\": \"$(printf 'x%.0s' {1..2000})\"}|422|/reason" '{"reason": "a", "why": 1}|422|/why'; do
   IFS='|' read -r body code pointer <<< "$wrong"
   fetch POST "/api/v1/jobs/$high/retry" --data-binary "$body"
   check "a retry with $body" "$code $pointer" "$CODE $(field .pointer)"

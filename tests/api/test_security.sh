@@ -170,7 +170,21 @@ as "$admin" GET /api/v1/caller
 check_match "refused with a time" '^429 1 too_many_requests$' "$CODE $(header Retry-After) $(field .code)"
 as "$renewed" GET /api/v1/caller
 check "another token has its own rate" 200 "$CODE"
+check_match "without a token the address counts" '(127.0.0.1)' \
+  "$(curl -s "$URL/healthz#[1-30]" | jq -r 'select(.status == 429).detail' | head -1)"
 stop_daemon TERM
+
+# Over IPv6, where the kernel has it. Without a certificate a SIGHUP changes nothing.
+if grep -q '^0*1 ' /proc/net/if_inet6 2> /dev/null; then
+  start_daemon --listen '[::1]:0'
+  kill -HUP "$DAEMON_PID"
+  as wrong GET /api/v1/caller
+  check "a wrong token over IPv6" 401 "$CODE"
+  check_match "its address" 'wrong token from ::1$' "$(grep wrong "$WORK/stderr" | tail -1)"
+  as "$admin" GET /api/v1/caller
+  check "a good one" 200 "$CODE"
+  stop_daemon TERM
+fi
 
 # Behind a proxy: its word for the address is believed, the client's is not; names are given.
 start_daemon --behind-proxy --host lab.example,other.example --host third.example --connections-per-address 2

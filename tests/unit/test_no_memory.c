@@ -16,6 +16,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "server/auth/token_file.h"
 #include "server/daemon.h"
 #include "solver/job/embed.h"
 #include "solver/job/spec.h"
@@ -180,6 +181,32 @@ static void create_all(void) {
   }
 }
 
+/* A file of tokens that cannot be read for lack of memory is not called damaged. */
+static void read_tokens(void) {
+  struct token_list list = {0};
+  char path[100], secret[TOKEN_SECRET_SIZE];
+  bool failed = true;
+  if (token_list_add(&list, "a", ROLE_READ, secret, NULL) != STATUS_OK ||
+      token_list_add(&list, "b", ROLE_ADMIN, secret, NULL) != STATUS_OK ||
+      token_file_write(directory, &list, NULL) != STATUS_OK) {
+    abort();
+  }
+  token_list_clear(&list);
+  for (long place = 1; failed; place++) {
+    struct error error = {.status = STATUS_OK};
+    no_memory_arm(place, place % 2 == 0);
+    enum status status = token_file_read(directory, &list, &error);
+    failed = no_memory_disarm();
+    if (status != STATUS_NO_MEMORY && (status != STATUS_OK || list.count != 2)) {
+      fail("tokens", place, error.message);
+    }
+    token_list_clear(&list);
+  }
+  if (!token_file_path(directory, path, sizeof path) || unlink(path) != 0) {
+    abort();
+  }
+}
+
 /* ---- submitting ------------------------------------------------------------------------------ */
 
 static int remove_one(const char *path, const struct stat *info, int kind, struct FTW *walk) {
@@ -316,6 +343,7 @@ int main(void) {
     return EXIT_FAILURE;
   }
   create_all();
+  read_tokens();
   for (size_t i = 0; i < sizeof documents / sizeof *documents; i++) {
     places += read_all(reader, i, false) + read_all(reader, i, true);
   }
