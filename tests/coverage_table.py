@@ -4,12 +4,11 @@ import glob
 import re
 import subprocess
 
-FOLDERS = ("solver/base", "solver/job", "server/base", "server/auth", "server/exec", "server/http",
-           "server/plot")
+FOLDERS = ("solver/base", "solver/job", "server/base", "server/auth", "server/exec", "server/http")
 PARSERS = ("json json_memory schema schema_* spec spec_* embed study study_* trials steps tensile "
            "measured parameter mirror *_check bistable hlpv units table text error numbers url "
            "request guard option options token_file token_command progress outcome route access "
-           "session events event_text cache jobs submission patch retry skin data").split()
+           "session events event_text cache jobs submission patch retry").split()
 
 
 def branches(notes, source):
@@ -24,6 +23,7 @@ def branches(notes, source):
 def main():
     names = {name for parser in PARSERS for folder in FOLDERS
              for name in glob.glob(f"{folder}/*-{parser}.gcda")}
+    names.update(glob.glob("server/plot/*-skin.gcda"))  # surface.json of a worker
     rows = []
     for name in names:
         folder, file = name.rsplit("/", 1)
