@@ -10,13 +10,13 @@
 
 /* ---- variants ---- */
 
-struct variant {
+struct body {
   struct chamber_run runs[3];
   int run_count;
   bool has_channel, half, tapered, scaled;
 };
 
-static const struct variant variants[] = {
+static const struct body variants[] = {
     {{{CHAMBER_A, 3}}, 1, false, false, false, false},
     {{{CHAMBER_B, 3}}, 1, false, false, false, false},
     {{{CHAMBER_C, 3}}, 1, false, false, false, false},
@@ -47,7 +47,7 @@ static int count_of(const struct pneunet_spec *p, enum chamber_config config) {
   return count;
 }
 
-static void fill_spec(const struct variant *v, struct job_spec *spec) {
+static void fill_spec(const struct body *v, struct job_spec *spec) {
   case_prototype(spec, 1);
   struct pneunet_spec *p = &spec->pneunet;
   memcpy(p->runs, v->runs, sizeof v->runs);
