@@ -202,7 +202,7 @@ enum status reader_fit(const struct reader *reader, const json_t *document, stru
   fit->to = INFINITY;
   enum status status = read_model(reader, document, fit);
   if (status == STATUS_OK) {
-    status = read_pair(reader, document, "range", "[0, 1] for 0 to 100 %", &fit->from, &fit->to);
+    status = read_pair(reader, document, "range", "[0, 1]", &fit->from, &fit->to);
   }
   if (status == STATUS_OK) {
     status = read_bounds(reader, json_object_get(document, "bounds"), fit);

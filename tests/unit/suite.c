@@ -110,6 +110,10 @@ void suite_check_variant(const struct variant *variant) {
                 "%s = %s: %s: %s", first, value, error.pointer, error.message);
   ck_assert_msg(error.allowed[0] != '\0', "%s = %s: nothing is allowed: %s", first, value,
                 error.message);
+  json_t *example = json_loads(error.example, JSON_DECODE_ANY, NULL);
+  ck_assert_msg(example != NULL || error.example[0] == '\0', "%s = %s: no JSON: %s", first, value,
+                error.example);
+  json_decref(example);
   ck_assert_int_ge(error.line, 1);
 }
 

@@ -40,7 +40,8 @@ struct refusal {
 /* Asserts that the change is refused as described, with a place in the text. */
 void suite_check_refusal(const struct refusal *refusal);
 
-/* A job with a few changes, which is taken, or refused with a message that says what is allowed. */
+/* A job with a few changes, which is taken, or refused with a message that says what is allowed,
+ * and maybe an example, which is JSON. */
 struct variant {
   const char *base;        /* text of a job; NULL: that of suite_read_changed */
   const char *edits[5][2]; /* as in suite_read_edited */

@@ -124,6 +124,7 @@ static const struct variant variants[] = {
     {fit, {CSV("e,s\\n0,0\\n")}, "/data/csv", "does not rise"},
     {fit, {CSV("e,s\\n0,0\\n0,1\\n0,2\\n0,3\\n")}, "/data/csv", "pulling is positive"},
     {fit, {CSV("e,s\\n0,0\\n0.2,0.05\\n0.4,0.1\\n")}, "/data/csv", "at least 4"},
+    {fit, {{"/range", "[0.7, 0.5]"}}, "/range", "must be below"},
     {fit, {{"/range", "[0.5, 0.7]"}}, "/range", "1 of 7 points are used"},
     {fit, {CSV("e,s\\n0.5,9\\n1,10\\n1.2,11\\n1.5,11\\n2,12\\n")}, NULL, NULL},
     {fit, {CSV("e,s\\n0.4,0.09\\n1,0.1\\n1.2,0.11\\n1.5,0.11\\n")}, NULL, NULL},
