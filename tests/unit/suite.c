@@ -14,6 +14,17 @@ static const char base_job[] =
     " \"taper\": {\"left\": \"2 deg\", \"right\": \"2 deg\"}},"
     " \"material\": \"elastic-50a\", \"load\": {\"pressure\": {\"to\": \"50 kPa\"}}}";
 
+static struct job_reader *shared; /* of suite_share_reader */
+
+void suite_share_reader(void) {
+  ck_assert_int_eq(job_reader_create(&shared, NULL), STATUS_OK);
+}
+
+void suite_drop_reader(void) {
+  job_reader_destroy(shared);
+  shared = NULL;
+}
+
 int suite_run(Suite *suite) {
   SRunner *runner = srunner_create(suite);
   srunner_run_all(runner, CK_NORMAL);
@@ -63,7 +74,8 @@ enum status suite_read_document(const char *base, const char *const (*edits)[2],
     set_at(document, (*edits)[0], (*edits)[1]);
   }
   char *text = json_dumps(document, JSON_INDENT(1));
-  enum status status = job_spec_read(text, strlen(text), spec, error);
+  enum status status = shared ? job_reader_read(shared, text, strlen(text), spec, error)
+                              : job_spec_read(text, strlen(text), spec, error);
   free(text);
   json_decref(document);
   return status;

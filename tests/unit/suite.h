@@ -8,6 +8,11 @@
 /* Runs a suite, frees it and returns the exit code of the test program. */
 int suite_run(Suite *suite);
 
+/* An unchecked fixture: one reader for all tests of a suite that read jobs by what follows, so that
+ * not each of them makes its own. */
+void suite_share_reader(void);
+void suite_drop_reader(void);
+
 /* Reads a valid job (7 chambers B, 5 C, channel, lateral tapers of 2 deg) after one change:
  * the member that `pointer` names (no escapes) becomes the JSON `value`, or goes when it is NULL.
  * A NULL `pointer` changes nothing. */

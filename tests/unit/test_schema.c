@@ -213,14 +213,15 @@ END_TEST
 
 /* Nobody wants to know: the same answers. */
 START_TEST(checks_without_a_sentence) {
-  struct schema *schema = NULL;
-  ck_assert_int_eq(
-      schema_create(refused[_i].schema, strlen(refused[_i].schema), units, &schema, NULL),
-      STATUS_OK);
-  json_t *value = json_loads(refused[_i].value, JSON_DECODE_ANY, NULL);
-  ck_assert_int_eq(schema_check(schema, value, NULL), STATUS_INVALID);
-  json_decref(value);
-  schema_destroy(schema);
+  for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
+    const char *text = refused[i].schema;
+    struct schema *schema = NULL;
+    ck_assert_int_eq(schema_create(text, strlen(text), units, &schema, NULL), STATUS_OK);
+    json_t *value = json_loads(refused[i].value, JSON_DECODE_ANY, NULL);
+    ck_assert_int_eq(schema_check(schema, value, NULL), STATUS_INVALID);
+    json_decref(value);
+    schema_destroy(schema);
+  }
 }
 END_TEST
 
@@ -302,7 +303,7 @@ int main(void) {
   tcase_add_loop_test(tcase, a_schema_with_a_rule_that_nobody_enforces_is_refused, 0,
                       sizeof broken / sizeof *broken);
   tcase_add_test(tcase, a_limit_of_another_kind_is_an_internal_error);
-  tcase_add_loop_test(tcase, checks_without_a_sentence, 0, sizeof refused / sizeof *refused);
+  tcase_add_test(tcase, checks_without_a_sentence);
   tcase_add_test(tcase, fills_defaults_at_every_level);
   tcase_add_test(tcase, examples_of_the_job_schema_follow_it);
   suite_add_tcase(suite, tcase);

@@ -170,6 +170,7 @@ END_TEST
 int main(void) {
   Suite *suite = suite_create("job: variants of pneu-nets");
   TCase *tcase = tcase_create("all");
+  tcase_add_unchecked_fixture(tcase, suite_share_reader, suite_drop_reader);
   tcase_add_loop_test(tcase, variants_are_taken_or_refused, 0, sizeof variants / sizeof *variants);
   suite_add_tcase(suite, tcase);
   return suite_run(suite);

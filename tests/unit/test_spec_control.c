@@ -159,6 +159,7 @@ END_TEST
 int main(void) {
   Suite *suite = suite_create("job: control of hybrid models");
   TCase *tcase = tcase_create("all");
+  tcase_add_unchecked_fixture(tcase, suite_share_reader, suite_drop_reader);
   tcase_add_loop_test(tcase, variants_are_taken_or_refused, 0, sizeof variants / sizeof *variants);
   tcase_add_test(tcase, the_set_point_at_rest_lies_within_the_limits);
   suite_add_tcase(suite, tcase);

@@ -170,6 +170,7 @@ END_TEST
 int main(void) {
   Suite *suite = suite_create("job: bellows that snap");
   TCase *tcase = tcase_create("all");
+  tcase_add_unchecked_fixture(tcase, suite_share_reader, suite_drop_reader);
   tcase_add_loop_test(tcase, variants_are_taken_or_refused, 0, sizeof variants / sizeof *variants);
   tcase_add_test(tcase, a_calibration_leaves_the_body_alone);
   suite_add_tcase(suite, tcase);
