@@ -27,6 +27,14 @@ struct timespec clock_deadline(int64_t delay_ms) {
   return (struct timespec){.tv_sec = (time_t)(at / 1000), .tv_nsec = (long)(at % 1000) * 1000000L};
 }
 
+void clock_condition_init(pthread_cond_t *condition) {
+  pthread_condattr_t monotonic;
+  pthread_condattr_init(&monotonic);
+  pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
+  pthread_cond_init(condition, &monotonic);
+  pthread_condattr_destroy(&monotonic);
+}
+
 void clock_format(int64_t unix_ms, char text[CLOCK_TEXT_SIZE]) {
   time_t seconds = (time_t)(unix_ms / 1000);
   struct tm utc;

@@ -2,6 +2,7 @@
 #ifndef PNEULAB_SERVER_CLOCK_H
 #define PNEULAB_SERVER_CLOCK_H
 
+#include <pthread.h>
 #include <stdint.h>
 #include <time.h>
 
@@ -18,6 +19,9 @@ int64_t clock_monotonic_us(void);
 
 /* The moment `delay_ms` from now on the monotonic clock, for timed waits. */
 struct timespec clock_deadline(int64_t delay_ms);
+
+/* Makes a condition whose timed waits end at such a moment; the caller destroys it. */
+void clock_condition_init(pthread_cond_t *condition);
 
 /* Writes unix_ms as "2026-11-22T07:33:26.123Z" into text. */
 void clock_format(int64_t unix_ms, char text[CLOCK_TEXT_SIZE]);

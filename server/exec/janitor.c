@@ -197,12 +197,8 @@ enum status janitor_create(const struct janitor_settings *settings, struct janit
     return error_set(error, STATUS_NO_MEMORY, NULL, "No memory for the janitor.");
   }
   made->settings = *settings;
-  pthread_condattr_t monotonic;
-  pthread_condattr_init(&monotonic);
-  pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
   pthread_mutex_init(&made->mutex, NULL);
-  pthread_cond_init(&made->wake, &monotonic);
-  pthread_condattr_destroy(&monotonic);
+  clock_condition_init(&made->wake);
   if (pthread_create(&made->thread, NULL, janitor_main, made) != 0) {
     pthread_cond_destroy(&made->wake);
     pthread_mutex_destroy(&made->mutex);

@@ -283,12 +283,8 @@ enum status pool_create(const struct pool_settings *settings, struct pool **pool
   }
   made->settings = *settings;
   made->statistics.workers = settings->workers;
-  pthread_condattr_t monotonic;
-  pthread_condattr_init(&monotonic);
-  pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
   pthread_mutex_init(&made->mutex, NULL);
-  pthread_cond_init(&made->work, &monotonic);
-  pthread_condattr_destroy(&monotonic);
+  clock_condition_init(&made->work);
   if (tally_create(&made->tally, error) != STATUS_OK) {
     pool_destroy(made);
     return error->status;

@@ -390,12 +390,8 @@ enum status feed_create(struct store *store, unsigned subscribers_max, struct fe
   made->store = store;
   made->limit = subscribers_max;
   feed_ring_init(&made->ring, last);
-  pthread_condattr_t monotonic;
-  pthread_condattr_init(&monotonic);
-  pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
   pthread_mutex_init(&made->mutex, NULL);
-  pthread_cond_init(&made->wake, &monotonic);
-  pthread_condattr_destroy(&monotonic);
+  clock_condition_init(&made->wake);
   made->started = pthread_create(&made->thread, NULL, feed_main, made) == 0;
   if (!made->started) {
     feed_destroy(made);

@@ -357,12 +357,8 @@ enum status server_create(const struct options *options, struct service *service
     return error_set(error, STATUS_NO_MEMORY, NULL, "No memory for the server.");
   }
   made->service = service;
-  pthread_condattr_t monotonic;
-  pthread_condattr_init(&monotonic);
-  pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
   pthread_mutex_init(&made->mutex, NULL);
-  pthread_cond_init(&made->stop, &monotonic);
-  pthread_condattr_destroy(&monotonic);
+  clock_condition_init(&made->stop);
   struct connection_times times = {.header_ms = (int64_t)(1000 * options->header_timeout_s),
                                    .body_ms = (int64_t)(1000 * options->body_timeout_s)};
   enum status status = connections_create(&times, service->access->tls, &made->connections, error);

@@ -103,12 +103,8 @@ enum status snapshots_create(struct store *store, const char *data,
   made->done = done;
   made->context = context;
   made->fd = -1;
-  pthread_condattr_t monotonic;
-  pthread_condattr_init(&monotonic);
-  pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
   pthread_mutex_init(&made->mutex, NULL);
-  pthread_cond_init(&made->asked, &monotonic);
-  pthread_condattr_destroy(&monotonic);
+  clock_condition_init(&made->asked);
   if (pthread_create(&made->thread, NULL, snapshots_main, made) != 0) {
     pthread_cond_destroy(&made->asked);
     pthread_mutex_destroy(&made->mutex);
