@@ -78,8 +78,8 @@ enum status store_state_of(sqlite3 *db, int64_t id, enum job_state *state, struc
 /* STATUS_NOT_FOUND with the sentence for a job that does not exist. */
 enum status store_no_job(int64_t id, struct error *error);
 
-/* Fills *record from a row of the columns JOB_COLUMNS and reads labels, metrics, artifacts. */
-enum status store_record_read(sqlite3 *db, sqlite3_stmt *row, struct job_record *record,
+/* Reads one job by a connection that is held already; otherwise as store_job. */
+enum status store_record_read(sqlite3 *db, int64_t id, struct job_record *record,
                               struct error *error);
 
 /* Charges the worker time of an attempt that ends at `now` (unix ms) to the job's submitter, and
@@ -93,12 +93,5 @@ enum reuse { REUSE_NONE, REUSE_ANSWERED, REUSE_WAITS };
 /* Looks for a job equal to the queued job `id`: one that succeeded answers it (it is succeeded
  * then), one that runs makes it wait. In a write transaction. */
 enum status reuse_try(struct store *store, int64_t id, enum reuse *reuse, struct error *error);
-
-#define JOB_COLUMNS                                                                                \
-  "job.id, job.state, job.reason_code, job.message, job.kind, job.name, job.spec_hash, "           \
-  "job.attempt, coalesce(job.retry_of, 0), job.created_ms, coalesce(job.started_ms, 0), "          \
-  "coalesce(job.finished_ms, 0), EXISTS (SELECT 1 FROM result WHERE result.job_id = job.id), "     \
-  "job.retry_reason, job.submitter, job.priority, coalesce(job.reused_from, 0), "                  \
-  "coalesce(job.waits_for, 0)"
 
 #endif

@@ -103,22 +103,6 @@ static int descending(const void *a, const void *b) {
   return place_compare(b, a);
 }
 
-static enum status record_at(sqlite3 *db, int64_t id, struct job_record *record,
-                             struct error *error) {
-  sqlite3_stmt *statement;
-  int row = 0;
-  enum status status = sql_prepare(db, &statement, error,
-                                   "SELECT " JOB_COLUMNS " FROM job WHERE job.id = ?", "i", id);
-  if (status == STATUS_OK) {
-    status = sql_step(statement, &row, error);
-  }
-  if (status == STATUS_OK) {
-    status = row ? store_record_read(db, statement, record, error) : store_no_job(id, error);
-  }
-  sql_done(statement);
-  return status;
-}
-
 /* Reads the first jobs of the places; one place more tells that there is another page. */
 static enum status page_read(sqlite3 *db, const struct list_query *query, struct places *places,
                              struct job_record *records, size_t *count, char **next,
@@ -129,7 +113,7 @@ static enum status page_read(sqlite3 *db, const struct list_query *query, struct
           query->descending ? descending : ascending);
   }
   while (*count < limit && *count < places->count) {
-    enum status status = record_at(db, places->list[*count].id, &records[*count], error);
+    enum status status = store_record_read(db, places->list[*count].id, &records[*count], error);
     if (status != STATUS_OK) {
       return status;
     }

@@ -89,8 +89,16 @@ static void take_attempt(json_t *into, sqlite3_stmt *row) {
                       optional_number(row, 9)));
 }
 
-enum status store_record_read(sqlite3 *db, sqlite3_stmt *row, struct job_record *record,
-                              struct error *error) {
+#define JOB_COLUMNS                                                                                \
+  "job.id, job.state, job.reason_code, job.message, job.kind, job.name, job.spec_hash, "           \
+  "job.attempt, coalesce(job.retry_of, 0), job.created_ms, coalesce(job.started_ms, 0), "          \
+  "coalesce(job.finished_ms, 0), EXISTS (SELECT 1 FROM result WHERE result.job_id = job.id), "     \
+  "job.retry_reason, job.submitter, job.priority, coalesce(job.reused_from, 0), "                  \
+  "coalesce(job.waits_for, 0)"
+
+/* Fills *record from a row of JOB_COLUMNS and reads labels, metrics, artifacts. */
+static enum status row_read(sqlite3 *db, sqlite3_stmt *row, struct job_record *record,
+                            struct error *error) {
   *record = (struct job_record){.id = sqlite3_column_int64(row, 0),
                                 .reason_code = sql_text_copy(row, 2),
                                 .message = sql_text_copy(row, 3),
@@ -138,12 +146,8 @@ enum status store_record_read(sqlite3 *db, sqlite3_stmt *row, struct job_record 
   return status;
 }
 
-enum status store_job(struct store *store, int64_t id, struct job_record *record,
-                      struct error *error) {
-  sqlite3 *db = store_read_begin(store, error);
-  if (!db) {
-    return STATUS_IO;
-  }
+enum status store_record_read(sqlite3 *db, int64_t id, struct job_record *record,
+                              struct error *error) {
   sqlite3_stmt *statement;
   int row = 0;
   enum status status = sql_prepare(db, &statement, error,
@@ -152,9 +156,19 @@ enum status store_job(struct store *store, int64_t id, struct job_record *record
     status = sql_step(statement, &row, error);
   }
   if (status == STATUS_OK) {
-    status = row ? store_record_read(db, statement, record, error) : store_no_job(id, error);
+    status = row ? row_read(db, statement, record, error) : store_no_job(id, error);
   }
   sql_done(statement);
+  return status;
+}
+
+enum status store_job(struct store *store, int64_t id, struct job_record *record,
+                      struct error *error) {
+  sqlite3 *db = store_read_begin(store, error);
+  if (!db) {
+    return STATUS_IO;
+  }
+  enum status status = store_record_read(db, id, record, error);
   store_read_end(store, db);
   return status;
 }
