@@ -1,10 +1,9 @@
 #include "server/store/snapshot.h"
 
-#include <fcntl.h>
 #include <stdio.h>
 #include <time.h>
-#include <unistd.h>
 
+#include "server/base/file.h"
 #include "server/store/sql.h"
 
 enum {
@@ -40,17 +39,6 @@ static enum status copy_pages(sqlite3 *db, sqlite3 *copy, snapshot_stop *stop, v
   return code == SQLITE_DONE ? STATUS_OK : copy_fail(copy, code, error);
 }
 
-/* Makes what has been written to a file durable. */
-static enum status file_settle(const char *path, struct error *error) {
-  int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
-  bool settled = fd >= 0 && fsync(fd) == 0;
-  if (fd >= 0) {
-    close(fd);
-  }
-  return settled ? STATUS_OK
-                 : error_set(error, STATUS_IO, NULL, "Cannot write the copy %s.", path);
-}
-
 enum status snapshot_copy(sqlite3 *db, const char *path, snapshot_stop *stop, void *context,
                           struct error *error) {
   sqlite3 *copy = NULL;
@@ -71,7 +59,7 @@ enum status snapshot_copy(sqlite3 *db, const char *path, snapshot_stop *stop, vo
   if (sqlite3_close(copy) != SQLITE_OK && status == STATUS_OK) {
     status = error_set(error, STATUS_IO, NULL, "Cannot close the copy %s.", path);
   }
-  return status == STATUS_OK ? file_settle(path, error) : status;
+  return status == STATUS_OK ? file_sync(path, error) : status;
 }
 
 enum status store_snapshot(struct store *store, const char *path, snapshot_stop *stop,
