@@ -2,6 +2,7 @@
 
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "server/http/service.h"
@@ -74,4 +75,16 @@ bool cache_fresh_text(const struct request *request, struct reply *reply, const 
   }
   etag_mark(reply, etag, "no-cache");
   return fresh;
+}
+
+void cache_reply_text(const struct request *request, struct reply *reply, const char *content_type,
+                      char *text) {
+  size_t size = strlen(text);
+  uint64_t tag = cache_tag_add(cache_tag(), text, size);
+  if (cache_fresh(request, reply, tag)) {
+    free(text);
+    return;
+  }
+  reply_text(reply, content_type, text, size);
+  cache_mark(reply, tag);
 }

@@ -25,4 +25,9 @@ bool cache_fresh(const struct request *request, struct reply *reply, uint64_t ta
  * program itself, which any cache may keep. */
 bool cache_fresh_text(const struct request *request, struct reply *reply, const char *etag);
 
+/* Replies with a text from the heap, taken over, that never changes; when the request has it
+ * already, with 304. */
+void cache_reply_text(const struct request *request, struct reply *reply, const char *content_type,
+                      char *text);
+
 #endif

@@ -1,5 +1,4 @@
 #include <stdlib.h>
-#include <string.h>
 
 #include "server/exec/janitor.h"
 #include "server/http/cache.h"
@@ -28,13 +27,7 @@ void job_document(struct request *request, struct reply *reply) {
     reply_error(reply, &error);
     return;
   }
-  uint64_t tag = cache_tag_add(cache_tag(), text, strlen(text));
-  if (cache_fresh(request, reply, tag)) {
-    free(text);
-    return;
-  }
-  reply_text(reply, "application/json", text, strlen(text));
-  cache_mark(reply, tag);
+  cache_reply_text(request, reply, "application/json", text);
 }
 
 void job_delete(struct request *request, struct reply *reply) {

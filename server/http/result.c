@@ -1,7 +1,6 @@
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -38,13 +37,7 @@ void result_show(struct request *request, struct reply *reply) {
   if (!result_read(request, reply, &id, &text, NULL)) {
     return;
   }
-  uint64_t tag = cache_tag_add(cache_tag(), text, strlen(text));
-  if (cache_fresh(request, reply, tag)) {
-    free(text);
-    return;
-  }
-  reply_text(reply, "application/json", text, strlen(text));
-  cache_mark(reply, tag);
+  cache_reply_text(request, reply, "application/json", text);
 }
 
 void result_metrics(struct request *request, struct reply *reply) {
