@@ -10,7 +10,7 @@ build_packages=(
 test_packages=(chromium calculix-ccx python3 procps openssl mandoc
   libmumps-seq-dev)
 # An npm from elsewhere comes with a Node.js that conflicts with those of Debian.
-command -v npm >/dev/null || test_packages+=(nodejs npm)
+command -v npm >/dev/null || build_packages+=(nodejs npm)
 
 say() {
   printf '\n== %s\n' "$*"

@@ -29,6 +29,30 @@ for path in "/api/v1/jobs/$id/document" "/api/v1/jobs/$id/result" "/api/v1/jobs/
   done
 done
 
+# Pages are sent packed to who can unpack them; a library may be kept for ever under its hash.
+fetch GET /static/style.css
+plain=$(sha256sum <<< "$BODY")
+tag=$(header ETag)
+check "no coding unasked" "Accept-Encoding " "$(header Vary) $(header Content-Encoding)"
+fetch GET /static/style.css --compressed -H 'Accept-Encoding: gzip'
+check "packed" "gzip $plain" "$(header Content-Encoding) $(sha256sum <<< "$BODY")"
+check_match "under a tag of its own" "^${tag%?}-gz\"\$" "$(header ETag)"
+fetch GET /static/style.css -H 'Accept-Encoding: gzip;q=0'
+check "not packed where that is refused" "" "$(header Content-Encoding)"
+for library in echarts three; do
+  fetch GET "/static/vendor/$library.js"
+  path=$(sed -n "s/^export \* from '\(.*\)';$/\1/p" <<< "$BODY")
+  check_match "$library has its hash in its path" "^/static/vendor/$library-[0-9a-f]{16}\.js$" "$path"
+  check "its name is asked for anew" no-cache "$(header Cache-Control)"
+  curl -sS -o "$WORK/plain" "$URL$path"
+  fetch GET "$path" -H "Accept-Encoding: gzip, br"
+  check "$library comes packed" br "$(header Content-Encoding)"
+  check_match "$library is kept" immutable "$(header Cache-Control)"
+  check "$library has the hash" "$path" "/static/vendor/$library-$(sha256sum < "$WORK/plain" | cut -c 1-16).js"
+  fetch GET "/static/vendor/$library.txt"
+  check_match "$library has its licence" "$library [0-9.]+ \(" "$BODY"
+done
+
 # Tags tell contents apart.
 fetch GET "/api/v1/jobs/$id/document"
 etag=$(header ETag)

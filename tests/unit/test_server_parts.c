@@ -12,6 +12,7 @@
 #include "server/base/options.h"
 #include "server/exec/outcome.h"
 #include "server/exec/progress.h"
+#include "server/http/encoding.h"
 #include "server/http/guard.h"
 #include "server/http/url.h"
 
@@ -94,6 +95,30 @@ START_TEST(url_bounds_the_query) {
     snprintf(target + used, sizeof target - used, "k%d=v&", i);
   }
   ck_assert_ptr_nonnull(url_parse(target, &url));
+}
+END_TEST
+
+START_TEST(encodings_are_accepted_by_weight) {
+  static const struct {
+    const char *accept;
+    bool gzip, brotli;
+  } cases[] = {{NULL, false, false},
+               {"", false, false},
+               {"gzip", true, false},
+               {"GZIP , br", true, true},
+               {"gzip, deflate, br, zstd", true, true},
+               {"xgzip, gzipx", false, false},
+               {"*", true, true},
+               {"*;q=0, gzip", true, false},
+               {"gzip;q=0, *", false, true},
+               {"br; q=0.000, gzip;q=0.5", true, false},
+               {"br;q=0.001", false, true},
+               {"br;q=", false, true},
+               {", ,, ;q=0,", false, false}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    ck_assert_msg(encoding_accepted(cases[i].accept, "gzip") == cases[i].gzip, "%zu", i);
+    ck_assert_msg(encoding_accepted(cases[i].accept, "br") == cases[i].brotli, "%zu", i);
+  }
 }
 END_TEST
 
@@ -326,6 +351,7 @@ int main(void) {
   tcase_add_test(tests, url_root_has_no_segments);
   tcase_add_test(tests, url_refuses_what_is_ambiguous);
   tcase_add_test(tests, url_bounds_the_query);
+  tcase_add_test(tests, encodings_are_accepted_by_weight);
   tcase_add_test(tests, loopback_hosts);
   tcase_add_test(tests, options_are_read);
   tcase_add_test(tests, options_are_refused_with_an_example);
