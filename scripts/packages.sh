@@ -5,7 +5,7 @@ build_packages=(
   build-essential autoconf automake pkg-config
   libmicrohttpd-dev libgnutls28-dev libsqlite3-dev libsundials-dev libsuitesparse-dev
   libopenblas-dev libgsl-dev libpng-dev zlib1g-dev libcairo2-dev libpango1.0-dev libjansson-dev
-  libudunits2-dev libmd-dev libseccomp-dev check fonts-dejavu-core curl jq python3-yaml sqlite3
+  libnlopt-dev libudunits2-dev libmd-dev libseccomp-dev check fonts-dejavu-core curl jq python3-yaml sqlite3
 )
 test_packages=(chromium calculix-ccx python3 procps openssl mandoc
   libmumps-seq-dev)
