@@ -7,6 +7,7 @@
 #include "solver/post/deck.h"
 #include "solver/post/fields.h"
 #include "solver/post/output.h"
+#include "solver/post/recording.h"
 #include "solver/post/skin.h"
 
 enum { NAME_SIZE = 32, FILES_MAX = EXPORT_STATES + 2 };
@@ -25,6 +26,7 @@ struct export {
   const char *directory;
   struct skin skin;
   struct fields fields;
+  struct recording *recording;
   struct series series[2];
   double time[FILES_MAX]; /* kPa */
   size_t file_count;      /* of each series */
@@ -79,6 +81,9 @@ enum status export_create(const struct job_spec *spec, const struct fe_model *mo
     status = fields_create(model->mesh, &e->fields);
   }
   if (status == STATUS_OK) {
+    status = recording_create(model->mesh, &e->recording, error);
+  }
+  if (status == STATUS_OK) {
     status = prepare_surface(e, error);
   }
   if (status == STATUS_OK) {
@@ -97,6 +102,7 @@ void export_destroy(struct export *e) {
     return;
   }
   skin_release(&e->skin);
+  recording_destroy(e->recording);
   fields_release(&e->fields);
   free(e->series[0].connectivity);
   free(e->series[1].connectivity);
@@ -123,6 +129,9 @@ static enum status write_collection(struct export *e, const struct series *s, st
 static enum status write_state(struct export *e, const struct fe_state *state,
                                struct error *error) {
   enum status status = fields_evaluate(e->model, state, &e->fields);
+  if (status == STATUS_OK) {
+    status = recording_add(e->recording, &e->fields, 1e-3 * e->pressure);
+  }
   if (status != STATUS_OK) {
     return error_set(error, status, NULL, "no memory for the fields of a state");
   }
@@ -162,7 +171,7 @@ enum status export_add(struct export *e, const struct fe_state *state, double pr
   return write_state(e, state, error);
 }
 
-enum table { TABLE_SAMPLES, TABLE_MIDLINES, TABLE_DECK };
+enum table { TABLE_SAMPLES, TABLE_MIDLINES, TABLE_RECORDING, TABLE_DECK };
 
 static enum status write_table(struct export *e, enum table table, const char *name,
                                const json_t *rows, json_t *artifacts, struct error *error) {
@@ -177,6 +186,9 @@ static enum status write_table(struct export *e, enum table table, const char *n
     break;
   case TABLE_MIDLINES:
     csv_write_midlines(output.file, rows);
+    break;
+  case TABLE_RECORDING:
+    status = recording_write(e->recording, output.file);
     break;
   case TABLE_DECK:
     status = deck_print(e->model->mesh, e->spec, "C3D20R", output.file, error);
@@ -200,6 +212,9 @@ enum status export_finish(struct export *e, const struct fe_state *last, const j
   }
   if (status == STATUS_OK) {
     status = write_table(e, TABLE_MIDLINES, "midlines.csv", midlines, artifacts, error);
+  }
+  if (status == STATUS_OK && e->file_count > 0) {
+    status = write_table(e, TABLE_RECORDING, "surface.bin", NULL, artifacts, error);
   }
   if (status == STATUS_OK && deck_knows(&e->spec->material)) {
     status = write_table(e, TABLE_DECK, "model.inp", NULL, artifacts, error);

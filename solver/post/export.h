@@ -3,7 +3,8 @@
  * Fields are written while the path is followed: surface-NNNN.vtu, the skin of the whole body,
  * and volume-NNNN.vtu, the elements as they were solved (half of the body where symmetry allowed
  * that), NNNN being the number of the recorded state; surface.pvd and volume.pvd list them by
- * pressure in kPa. Of a run with many recorded states every n-th and the last get files. */
+ * pressure in kPa. Of a run with many recorded states every n-th and the last get files; the same
+ * states are in surface.bin. */
 #ifndef PNEULAB_POST_EXPORT_H
 #define PNEULAB_POST_EXPORT_H
 
@@ -26,8 +27,8 @@ void export_destroy(struct export *export);
 enum status export_add(struct export *export, const struct fe_state *state, double pressure,
                        struct error *error);
 
-/* Writes the files of the last recorded state unless they are there, samples.csv, midlines.csv
- * and model.inp, and appends the names of all files to `artifacts`. `samples` and `midlines` are
+/* Writes the files of the last recorded state unless they are there, samples.csv, midlines.csv,
+ * surface.bin and model.inp, and appends the names of all files to `artifacts`. `samples` and `midlines` are
  * those of the result document, `last` is the last recorded state. */
 enum status export_finish(struct export *export, const struct fe_state *last, const json_t *samples,
                           const json_t *midlines, json_t *artifacts, struct error *error);

@@ -87,21 +87,28 @@ static void skin_position(const struct mesh *mesh, const struct skin *skin, cons
   }
 }
 
+void skin_face_quads(const struct skin *skin, int face, int quads[4][4]) {
+  const int *p = skin->face[face];
+  for (int n = 0; n < 4; n++) {
+    int corner = 3 * (n / 2) + n % 2;
+    quads[n][0] = p[corner];
+    quads[n][1] = p[skin->inward[face] ? corner + 1 : corner + 3];
+    quads[n][2] = p[corner + 4];
+    quads[n][3] = p[skin->inward[face] ? corner + 3 : corner + 1];
+  }
+}
+
 json_t *skin_quads(const struct skin *skin) {
-  json_t *quads = json_array();
+  json_t *list = json_array();
   for (int f = 0; f < skin->face_count; f++) {
-    const int *p = skin->face[f];
-    for (int a = 0; a < 2; a++) {
-      for (int b = 0; b < 2; b++) {
-        int corner = 3 * a + b;
-        int second = skin->inward[f] ? corner + 1 : corner + 3;
-        int fourth = skin->inward[f] ? corner + 3 : corner + 1;
-        json_array_append_new(quads,
-                              json_pack("[iiii]", p[corner], p[second], p[corner + 4], p[fourth]));
-      }
+    int quads[4][4];
+    skin_face_quads(skin, f, quads);
+    for (int n = 0; n < 4; n++) {
+      const int *q = quads[n];
+      json_array_append_new(list, json_pack("[iiii]", q[0], q[1], q[2], q[3]));
     }
   }
-  return quads;
+  return list;
 }
 
 /* Rounds for output: 1e-4 mm and 1e-4 of stretch are finer than any picture. */

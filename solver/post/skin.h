@@ -23,6 +23,9 @@ enum status skin_create(const struct mesh *mesh, bool cavities, struct skin *ski
                         struct error *error);
 void skin_release(struct skin *skin);
 
+/* The four quadrilaterals of a face: points of their corners, in turn. */
+void skin_face_quads(const struct skin *skin, int face, int quads[4][4]);
+
 /* The quadrilaterals as a JSON array of [a, b, c, d]. NULL when memory runs out. */
 json_t *skin_quads(const struct skin *skin);
 

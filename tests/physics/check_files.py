@@ -255,6 +255,50 @@ def check_deck(directory):
     return int(re.search(r"\*NSET, NSET=TIP\n(\d+)", text).group(1)) - 1
 
 
+def unpack_rows(data, rows, count, size):
+    """Values of rows of `count` numbers whose bytes are stored lowest first, all of one rank at a time."""
+    out = []
+    for r in range(rows):
+        row = data[r * count * size:(r + 1) * count * size]
+        planes = [row[b * count:(b + 1) * count] for b in range(size)]
+        out.append([sum(planes[b][k] << 8 * b for b in range(size)) for k in range(count)])
+    return out
+
+
+def check_recording(directory, surface, samples):
+    """surface.bin, read by its description, against surface.json."""
+    data = open(os.path.join(directory, "surface.bin"), "rb").read()
+    length = struct.unpack_from("<I", data, 8)[0]
+    head = json.loads(data[12:12 + length])
+    points, quads, states = head["points"], head["quads"], len(head["pressures_kPa"])
+    check("surface.bin: mark", data[:8] == b"PNLSURF1")
+    check("surface.bin: pressures", states == len(samples) and all(
+        abs(a - b["pressure_kPa"]) < 1e-3 for a, b in zip(head["pressures_kPa"], samples)))
+    plain = zlib.decompress(data[12 + length:])
+    check("surface.bin: size", len(plain) == 16 * quads + 2 * points * states * (3 + len(head["fields"])))
+    corners, last = [], 0
+    for difference in unpack_rows(plain, 1, 4 * quads, 4)[0]:
+        last = (last + difference) % 2**32
+        corners.append(last)
+    check("surface.bin: quads", corners == [c for quad in surface["quads"] for c in quad])
+    rows = unpack_rows(plain[16 * quads:], 6 * states, points, 2)
+    ranges = list(zip(head["low_mm"], head["high_mm"]))
+    ranges += [(field["low"], field["high"]) for field in head["fields"]]
+    for channel, (low, high) in enumerate(ranges):
+        of = rows[channel * states:(channel + 1) * states]
+        for p in range(1, points):
+            of[0][p] = (of[0][p] + of[0][p - 1]) % 65536
+        for s in range(1, states):
+            before = of[s - 2] if s > 1 else of[s - 1]
+            of[s] = [(d + 2 * a - b) % 65536 for d, a, b in zip(of[s], of[s - 1], before)]
+        if channel > 3:
+            continue
+        for s, state in ((0, surface["states"][0]), (-1, surface["states"][-1])):
+            wanted = [p[channel] for p in state["points_mm"]] if channel < 3 else state["stretch"]
+            off = max(abs(low + v * (high - low) / 65535 - w) for v, w in zip(of[s], wanted))
+            check("surface.bin: channel %d of state %d" % (channel, s), off < (high - low) / 65535 + 2e-4)
+
+
 def main(result_path, directory):
     result = json.load(open(result_path))
     artifacts = result["artifacts"]
@@ -268,6 +312,7 @@ def main(result_path, directory):
     check_series(result, directory, "volume", tip)
     surface = json.load(open(os.path.join(directory, "surface.json")))
     check("surface.json", len(surface["states"]) == 2)
+    check_recording(directory, surface, result["samples"])
     print("%d files, %d failures" % (len(artifacts), failures))
     return failures != 0
 

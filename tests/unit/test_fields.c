@@ -366,8 +366,8 @@ START_TEST(number_of_files) {
   ck_assert_ptr_nonnull(mkdtemp(directory));
   json_t *names = exported(cases[_i].steps, cases[_i].recorded, directory);
   size_t count = json_array_size(names);
-  /* two tables, the deck, two collections */
-  ck_assert_uint_eq(count, 5 + 2 * (size_t)cases[_i].states);
+  /* two tables, the deck, surface.bin, two collections */
+  ck_assert_uint_eq(count, 6 + 2 * (size_t)cases[_i].states);
   ck_assert_str_eq(json_string_value(json_array_get(names, count - 1)), cases[_i].last);
   remove_all(names, directory);
 }
