@@ -4,6 +4,7 @@
 #include "server/base/log.h"
 #include "server/http/handlers.h"
 #include "server/http/job_view.h"
+#include "server/http/jobs.h"
 #include "server/http/submission.h"
 
 enum { KEY_MAX = 200, LIST_LIMIT = 50, LIST_LIMIT_MAX = 500 };
@@ -169,20 +170,28 @@ static json_t *list_view(const struct service *service, struct job_record *recor
   return json_pack("{s:o, s:s?}", "jobs", jobs, "next", next);
 }
 
+bool jobs_query(const struct request *request, struct reply *reply, struct list_query *query) {
+  int64_t limit;
+  *query = (struct list_query){.kind = url_query(&request->url, "kind"),
+                               .cursor = url_query(&request->url, "cursor")};
+  if (!list_states(request, reply, query) || !list_labels(request, reply, query) ||
+      !list_sort(request, reply, query) ||
+      !request_query_integer(request, reply, "limit", 1, LIST_LIMIT_MAX, LIST_LIMIT, &limit)) {
+    return false;
+  }
+  query->limit = (int)limit;
+  return true;
+}
+
 void jobs_list(struct request *request, struct reply *reply) {
-  struct list_query query = {.kind = url_query(&request->url, "kind"),
-                             .cursor = url_query(&request->url, "cursor")};
+  struct list_query query;
   struct job_record *records;
   struct error error = {.status = STATUS_OK};
   size_t count;
-  int64_t limit;
   char *next;
-  if (!list_states(request, reply, &query) || !list_labels(request, reply, &query) ||
-      !list_sort(request, reply, &query) ||
-      !request_query_integer(request, reply, "limit", 1, LIST_LIMIT_MAX, LIST_LIMIT, &limit)) {
+  if (!jobs_query(request, reply, &query)) {
     return;
   }
-  query.limit = (int)limit;
   enum status status = store_list(request->service->store, &query, &records, &count, &next, &error);
   if (status == STATUS_INVALID) {
     reply_problem(reply, 400, "invalid_query", "%s", error.message);
