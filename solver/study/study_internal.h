@@ -2,6 +2,7 @@
 #ifndef PNEULAB_STUDY_STUDY_INTERNAL_H
 #define PNEULAB_STUDY_STUDY_INTERNAL_H
 
+#include "solver/explore/study_document.h"
 #include "solver/job/study.h"
 #include "solver/study/child.h"
 #include "solver/study/store.h"
@@ -16,12 +17,6 @@ struct member_state {
   bool resumed;      /* its result was there */
   char reason[40];   /* why there is no result, "" when there is one */
   char message[400]; /* the same in a sentence */
-};
-
-/* How the run went, for the document. */
-struct study_run_figures {
-  size_t computed, resumed;
-  double wall_s, cpu_s;
 };
 
 /* One process and the member it solves; of light members, the process alone. */
@@ -44,7 +39,7 @@ struct study_run {
   size_t next; /* first member that has not been looked at */
   size_t settled;
   double deadline_s; /* clock_wall_s, infinite without a limit */
-  struct study_run_figures figures;
+  struct study_figures figures;
 };
 
 /* Why the study has to end now, or STATUS_OK. */
@@ -66,21 +61,5 @@ void study_stop(struct study_run *run);
 /* Solves light members until all are settled or the study has to end.
  * STATUS_OK, STATUS_IO or STATUS_NO_MEMORY. */
 enum status study_work_light(struct study_run *run, enum status *ending, struct error *error);
-
-/* The result document of the study, a new reference; `state` has one entry a member. NULL when
- * memory runs out. */
-json_t *study_document(const struct job_spec *spec, const struct study *study,
-                       const struct member_state *state, const struct member_store *store,
-                       const struct study_run_figures *figures, enum status ending);
-
-/* For each metric that a member of the result has: its extremes with the members that have them,
- * its mean and its standard deviation. A new reference. */
-json_t *study_summary(const json_t *members);
-
-/* Adds to `warnings` that members have some, and drops theirs when they are much text. */
-void study_thin_warnings(json_t *members, json_t *warnings);
-
-/* Turns a member's result into that of its mirror image about y = 0, in place. */
-void study_mirror_result(json_t *result);
 
 #endif

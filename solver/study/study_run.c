@@ -262,6 +262,18 @@ static double children_cpu_s(void) {
          1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
 }
 
+/* What a member has come to, for the document. */
+static json_t *result_of(void *context, size_t index, const char **reason, const char **message) {
+  const struct study_run *run = context;
+  const struct member_state *state = &run->state[index];
+  json_t *result = state->settled && !state->reason[0]
+                       ? member_store_result(&run->store, &run->study.member[index])
+                       : NULL;
+  *reason = state->settled ? state->reason : "not_run";
+  *message = state->settled ? state->message : "the study ended before this member";
+  return result;
+}
+
 static bool any_solved(const struct study_run *run) {
   for (size_t i = 0; i < run->study.count; i++) {
     if (run->state[i].settled && !run->state[i].reason[0]) {
@@ -292,7 +304,8 @@ enum status study_run(const struct job_spec *spec, const struct study_options *o
   }
   run.figures.wall_s = clock_wall_s() - start_s;
   run.figures.cpu_s = children_cpu_s();
-  *document = study_document(spec, &run.study, run.state, &run.store, &run.figures, *ending);
+  struct study_results results = {.context = &run, .result = result_of};
+  *document = study_document(spec, &run.study, &results, &run.figures, *ending);
   if (!*document) {
     status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the result document");
   }

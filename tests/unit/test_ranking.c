@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "solver/study/ranking.h"
+#include "solver/explore/ranking.h"
 #include "tests/unit/suite.h"
 
 enum { POINTS = 241, LENGTH_MM = 120 };

@@ -1,9 +1,9 @@
-/* The result document of a study. */
+#include "solver/explore/study_document.h"
+
 #include <stdio.h>
 #include <string.h>
 #include "solver/base/text.h"
-#include "solver/study/ranking.h"
-#include "solver/study/study_internal.h"
+#include "solver/explore/ranking.h"
 
 /* A study whose members have more points of midlines than this keeps of each the midline at the
  * last pressure only, so that the document stays below what the daemon takes. */
@@ -48,7 +48,8 @@ static void mirror_points(json_t *points) {
   }
 }
 
-void study_mirror_result(json_t *result) {
+/* Turns the result into that of the mirror image about y = 0, in place. */
+static void mirror_result(json_t *result) {
   size_t index;
   json_t *item;
   mirror_figures(json_object_get(result, "metrics"));
@@ -117,30 +118,38 @@ static json_t *index_or_null(int index) {
   return index >= 0 ? json_integer(index) : json_null();
 }
 
+/* The result of a member by way of the one that was solved in its place. */
+static json_t *result_of(const struct study *study, size_t index,
+                         const struct study_results *results, const char **reason,
+                         const char **message) {
+  size_t from = index;
+  if (!results->each && study->member[index].same_as >= 0) {
+    from = (size_t)study->member[index].same_as;
+  }
+  bool mirrored = !results->each && study->member[from].mirror_of >= 0;
+  from = mirrored ? (size_t)study->member[from].mirror_of : from;
+  json_t *result = results->result(results->context, from, reason, message);
+  if (result && mirrored) {
+    mirror_result(result);
+  }
+  return result;
+}
+
 static json_t *member_object(const struct study *study, size_t index,
-                             const struct member_state *state, const struct member_store *store) {
+                             const struct study_results *results) {
   const struct study_member *member = &study->member[index];
+  const char *reason = "", *message = "";
   json_t *object = json_pack(
       "{s:i, s:s, s:O, s:O, s:s, s:s, s:s, s:s, s:o, s:o, s:{}, s:[]}", "index", (int)index, "name",
       member->name, "labels", member->labels, "values", member->values, "spec_hash", member->hash,
       "status", "failed", "reason", "", "message", "", "same_as", index_or_null(member->same_as),
       "mirror_of", index_or_null(member->mirror_of), "metrics", "samples");
-  int from = member->same_as >= 0 ? member->same_as : (int)index;
-  bool mirrored = study->member[from].mirror_of >= 0;
-  from = mirrored ? study->member[from].mirror_of : from;
-  const struct member_state *fate = &state[from];
-  json_t *result =
-      fate->settled && !fate->reason[0] ? member_store_result(store, &study->member[from]) : NULL;
+  json_t *result = result_of(study, index, results, &reason, &message);
   if (result) {
-    if (mirrored) {
-      study_mirror_result(result);
-    }
     take_result(object, result, study->keep_samples);
   } else {
-    json_object_set_new(object, "reason", json_string(fate->settled ? fate->reason : "not_run"));
-    json_object_set_new(
-        object, "message",
-        json_string(fate->settled ? fate->message : "the study ended before this member"));
+    json_object_set_new(object, "reason", json_string(reason));
+    json_object_set_new(object, "message", json_string(message));
   }
   json_decref(result);
   return object;
@@ -208,7 +217,7 @@ static void warn_of_failures(const json_t *members, json_t *warnings) {
   }
 }
 
-static json_t *metrics(const struct study *study, const struct study_run_figures *figures,
+static json_t *metrics(const struct study *study, const struct study_figures *figures,
                        const json_t *members) {
   size_t solved = count_status(members, "succeeded");
   return json_pack("{s:i, s:i, s:i, s:i, s:i, s:i, s:i}", "designs", (int)study->count, "solved",
@@ -243,11 +252,11 @@ static const char *ending_message(enum status ending) {
 }
 
 json_t *study_document(const struct job_spec *spec, const struct study *study,
-                       const struct member_state *state, const struct member_store *store,
-                       const struct study_run_figures *figures, enum status ending) {
+                       const struct study_results *results, const struct study_figures *figures,
+                       enum status ending) {
   json_t *members = json_array(), *warnings = json_array();
   for (size_t i = 0; i < study->count; i++) {
-    json_array_append_new(members, member_object(study, i, state, store));
+    json_array_append_new(members, member_object(study, i, results));
   }
   double cpu_s = members_cpu_s(study, members);
   warn_of_failures(members, warnings);

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 #include "solver/base/text.h"
-#include "solver/study/study_internal.h"
+#include "solver/explore/study_document.h"
 
 /* The members keep their warnings as long as these are no more bytes than this together. */
 enum { WARNING_BYTES_MAX = 1 << 20 };

@@ -1,7 +1,7 @@
 /* Bending, slope and deflection of a centreline at stations. */
 #include <math.h>
 #include <stdlib.h>
-#include "solver/study/ranking.h"
+#include "solver/explore/ranking.h"
 
 /* Part of the body's length over which the direction at a station is taken: about a chamber of the
  * actuators that are ranked, so that the waves of the single chambers do not count. */

@@ -1,4 +1,4 @@
-#include "solver/study/ranking.h"
+#include "solver/explore/ranking.h"
 
 #include <math.h>
 #include <stddef.h>

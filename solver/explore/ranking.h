@@ -12,8 +12,8 @@
  *   final      mean_weight * mean + (1 - mean_weight) * (1 - normalised variance)
  * The formula is the one printed in "Design Space Exploration and Performance Evaluation of a
  * Multi-Chamber, Multi-Curvature Soft Actuator for Robotic Applications". */
-#ifndef PNEULAB_STUDY_RANKING_H
-#define PNEULAB_STUDY_RANKING_H
+#ifndef PNEULAB_EXPLORE_RANKING_H
+#define PNEULAB_EXPLORE_RANKING_H
 
 #include <jansson.h>
 #include "solver/job/study.h"
