@@ -168,6 +168,7 @@ enum status reader_sensitivity(const struct reader *reader, const json_t *value,
   size_t index;
   json_t *item;
   s->count = 0;
+  s->midline = json_is_true(json_object_get(value, "midline"));
   if (json_is_true(value)) {
     s->count = count;
     memcpy(s->parameter, known, (size_t)count * sizeof *known);

@@ -169,6 +169,7 @@ enum { PARAMETERS_MAX = 40 };
 struct sensitivity_spec {
   int count; /* 0: no derivatives */
   struct job_parameter parameter[PARAMETERS_MAX];
+  bool midline; /* of the points of the midline, too */
 };
 
 enum { PLANES_MAX = 7 };

@@ -41,6 +41,7 @@ struct derivatives {
   double doubt;               /* relative, from contact that has not settled */
   double (*row)[QUANTITIES];  /* per unit of each parameter */
   double to_load[QUANTITIES]; /* per kPa */
+  double *midline;            /* count x section_count x 3, mm per unit; NULL unless asked for */
 };
 
 struct result_sensitivity {
@@ -177,6 +178,24 @@ static bool differentiate_by(struct result_sensitivity *r, int parameter, double
   return true;
 }
 
+/* The points of the midline by the direct method: what moves is the body at rest and, by
+ * K du/dtheta = -R,theta, the displacements. r->residual holds the difference of the residuals of
+ * the two sides; it is used up. */
+static void differentiate_midline(struct result_sensitivity *r, int parameter, double *out) {
+  const struct variation *v = &r->variation[parameter];
+  const struct sensitivity *s = r->linear;
+  sensitivity_adjoint(r->linear, r->residual, r->residual);
+  for (int k = 0; k < 3 * s->mesh.section_count; k++) {
+    int d = 3 * s->mesh.centreline[k / 3] + k % 3, equation = s->model->equation[d];
+    double moved = equation >= 0 ? -r->residual[equation] : 0;
+    out[k] = 1e3 * v->scale * (v->side[1].x[d] - v->side[0].x[d] + moved);
+  }
+}
+
+static size_t midline_size(const struct result_sensitivity *r) {
+  return 3 * (size_t)r->linear->mesh.section_count;
+}
+
 static void differentiate(struct result_sensitivity *r, struct derivatives *d) {
   struct sensitivity *s = r->linear;
   size_t dofs = (size_t)s->model->dof_count;
@@ -190,6 +209,9 @@ static void differentiate(struct result_sensitivity *r, struct derivatives *d) {
   for (int p = 0; p < r->count; p++) {
     if (r->variation[p].scale > 0) {
       d->known = d->known && differentiate_by(r, p, d->row[p]);
+      if (d->known && d->midline) {
+        differentiate_midline(r, p, d->midline + midline_size(r) * (size_t)p);
+      }
     }
   }
 }
@@ -201,10 +223,13 @@ enum status result_sensitivity_add(struct result_sensitivity *r, const struct pa
   struct derivatives *d = &r->state[r->state_count];
   d->pressure = point->pressure;
   d->row = calloc((size_t)r->count, sizeof *d->row);
-  if (!d->row) {
-    return STATUS_NO_MEMORY;
+  if (r->spec->sensitivity.midline) {
+    d->midline = calloc((size_t)r->count * midline_size(r) + 1, sizeof *d->midline);
   }
   r->state_count++;
+  if (!d->row || (r->spec->sensitivity.midline && !d->midline)) {
+    return STATUS_NO_MEMORY;
+  }
   struct fe_load load = {point->pressure, point->pressure, point->dead};
   enum status status = sensitivity_linearise(r->linear, point->state, &load);
   if (status == STATUS_OK) {
@@ -266,6 +291,7 @@ void result_sensitivity_destroy(struct result_sensitivity *r) {
   }
   for (int i = 0; i < r->state_count; i++) {
     free(r->state[i].row);
+    free(r->state[i].midline);
   }
   sensitivity_destroy(r->linear);
   free(r->variation);
@@ -305,12 +331,29 @@ static void set_row(const struct result_sensitivity *r, json_t *object, int para
   }
 }
 
+/* Sets the derivatives of the midline's points, which half a model cannot tell to a taper of one
+ * side. */
+static void set_midline(const struct result_sensitivity *r, json_t *object, int parameter,
+                        const struct derivatives *d) {
+  if (!d->midline || parameter < 0 ||
+      variation_one_sided(r->spec, r->variation[parameter].parameter)) {
+    return;
+  }
+  const double *point = d->midline + midline_size(r) * (size_t)parameter;
+  json_t *points = json_array();
+  for (int s = 0; s < r->linear->mesh.section_count; s++, point += 3) {
+    json_array_append_new(points, json_pack("[f, f, f]", point[0], point[1], point[2]));
+  }
+  json_object_set_new(object, "midline_mm", points);
+}
+
 static json_t *sample_rows(const struct result_sensitivity *r, int parameter) {
   json_t *samples = json_array();
   for (int i = 0; i < r->state_count; i++) {
     json_t *sample = json_pack("{s:f}", "pressure_kPa", 1e-3 * r->state[i].pressure);
     if (r->state[i].known) {
       set_row(r, sample, parameter, row_of(&r->state[i], parameter));
+      set_midline(r, sample, parameter, &r->state[i]);
     }
     json_array_append_new(samples, sample);
   }

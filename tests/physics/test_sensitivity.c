@@ -11,7 +11,7 @@
 #include "tests/physics/pneunet_case.h"
 #include "tests/unit/suite.h"
 
-enum { EDITS_MAX = 24, KEYS = 9, SOLVES_MAX = 30 };
+enum { EDITS_MAX = 24, KEYS = 9, POINTS = 3, VALUES = KEYS + 3 * POINTS, SOLVES_MAX = 30 };
 
 static const char *const keys[KEYS] = {
     "bending_angle_deg", "chord_angle_deg",   "end_face_angle_deg",
@@ -116,6 +116,7 @@ static json_t *find_derivatives(const struct design *design, struct pneunet_case
   struct result_sensitivity *r;
   struct error error = {0};
   read_design(design, "/sensitivity", "true", &spec);
+  spec.sensitivity.midline = true;
   case_open(c, &spec);
   case_follow(c);
   ck_assert_int_ge(contact_summarise(&c->model->contact).active, design->touching);
@@ -141,6 +142,20 @@ static double derivative(const json_t *entry, const char *key) {
   return value ? json_real_value(value) : NAN;
 }
 
+/* Some points along the midline, the first not at the base. */
+static int midline_point(int which, int count) {
+  return (which + 1) * (count - 1) / POINTS;
+}
+
+/* The derivative of a coordinate of one of them. */
+static double point_derivative(const json_t *entry, int which) {
+  const json_t *last = json_array_get(json_object_get(entry, "samples"), 0);
+  const json_t *points = json_object_get(last, "midline_mm");
+  int point = midline_point(which / 3, (int)json_array_size(points));
+  const json_t *value = json_array_get(json_array_get(points, (size_t)point), (size_t)(which % 3));
+  return value ? json_real_value(value) : NAN;
+}
+
 /* ---- differences ---- */
 
 /* Whether the last solve left tractions away from their multipliers. */
@@ -157,7 +172,7 @@ static bool settles_slowly(struct pneunet_case *c) {
 
 /* The changed body under the same pressure, settled from the state of the unchanged one. */
 static void solve_anew(const struct job_spec *spec, const struct pneunet_case *from,
-                       double out[KEYS]) {
+                       double out[VALUES]) {
   struct pneunet_case c;
   struct shape shape;
   int iterations;
@@ -188,6 +203,14 @@ static void solve_anew(const struct job_spec *spec, const struct pneunet_case *f
                       1e9 * whole * model_volume(c.model, &c.state, NULL),
                       1e3 * whole * c.model->reference_volume * spec->material.density_kg_m3};
   memcpy(out, all, sizeof all);
+  double *midline = malloc(3 * sizeof *midline * (size_t)c.mesh.section_count);
+  ck_assert_ptr_nonnull(midline);
+  shape_midline(&c.mesh, c.state.u, midline);
+  for (int i = 0; i < 3 * POINTS; i++) {
+    int point = midline_point(i / 3, c.mesh.section_count);
+    out[KEYS + i] = 1e3 * midline[3 * point + i % 3];
+  }
+  free(midline);
   case_close(&c);
 }
 
@@ -206,15 +229,15 @@ static void read_changed(const struct design *design, const json_t *entry, doubl
 }
 
 static void find_differences(const struct design *design, const struct pneunet_case *c,
-                             const json_t *entry, double out[KEYS]) {
+                             const json_t *entry, double out[VALUES]) {
   double value = json_real_value(json_object_get(entry, "value")), h = 1e-4 * fabs(value);
-  double side[2][KEYS];
+  double side[2][VALUES];
   for (int s = 0; s < 2; s++) {
     struct job_spec spec;
     read_changed(design, entry, value + (s ? h : -h), &spec);
     solve_anew(&spec, c, side[s]);
   }
-  for (int i = 0; i < KEYS; i++) {
+  for (int i = 0; i < VALUES; i++) {
     out[i] = (side[1][i] - side[0][i]) / (2 * h);
   }
 }
@@ -231,12 +254,13 @@ static bool skipped(const struct design *design, const char *pointer) {
 /* Compares all metrics of one parameter: relative to the derivative itself, or, where that
  * nearly vanishes, to a thousandth of the metric a parameter's size. Returns the worst. */
 static double compare(const struct design *design, const struct pneunet_case *c,
-                      const json_t *entry, const double size[KEYS]) {
-  double difference[KEYS], worst = 0;
+                      const json_t *entry, const double size[VALUES]) {
+  double difference[VALUES], worst = 0;
   double value = fabs(json_real_value(json_object_get(entry, "value")));
   find_differences(design, c, entry, difference);
-  for (int i = 0; i < KEYS; i++) {
-    double found = derivative(entry, keys[i]);
+  for (int i = 0; i < VALUES; i++) {
+    double found = i < KEYS ? derivative(entry, keys[i]) : point_derivative(entry, i - KEYS);
+    ck_assert(i < KEYS || isfinite(found));
     double scale = fmax(fabs(difference[i]), 1e-3 * size[i] / value);
     if (isfinite(found)) {
       worst = fmax(worst, fabs(found - difference[i]) / scale);
@@ -251,11 +275,11 @@ static double compare(const struct design *design, const struct pneunet_case *c,
 
 static void compare_all(const struct design *design, const struct pneunet_case *c,
                         const json_t *block, double tolerance) {
-  double size[KEYS], worst = 0;
+  double size[VALUES], worst = 0;
   size_t index, compared = 0;
   json_t *entry;
   solve_anew(&c->spec, c, size);
-  for (int i = 0; i < KEYS; i++) {
+  for (int i = 0; i < VALUES; i++) {
     size[i] = fabs(size[i]);
   }
   json_array_foreach(json_object_get(block, "parameters"), index, entry) {
@@ -303,7 +327,7 @@ static double balance(const struct design *design, const json_t *block, const ch
 /* The pressure needs no parameter: its derivative is the slope of the response. */
 static void compare_slopes(const struct design *design, const struct pneunet_case *c,
                            const json_t *block) {
-  double side[2][KEYS], h = 2e-4 * c->spec.load.pressure_to;
+  double side[2][VALUES], h = 2e-4 * c->spec.load.pressure_to;
   for (int s = 0; s < 2; s++) {
     struct job_spec spec = c->spec;
     spec.load.pressure_to += s ? h : -h;
@@ -365,7 +389,7 @@ START_TEST(half_a_body_gives_the_derivatives_of_the_whole) {
   ck_assert(half_case.mesh.half && !whole_case.mesh.half);
   /* A half model does not move sideways, and the frame of its end face weighs the nodes in the
    * plane of symmetry twice. */
-  const bool loose[KEYS] = {[2] = true, [5] = true};
+  const bool loose[VALUES] = {[2] = true, [5] = true};
   json_t *entry;
   size_t index;
   json_array_foreach(json_object_get(of_half, "parameters"), index, entry) {
