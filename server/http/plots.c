@@ -5,10 +5,11 @@
 
 #include "server/http/cache.h"
 #include "server/http/handlers.h"
+#include "server/http/picture.h"
 #include "server/plot/plot.h"
 #include "solver/job/json.h"
 
-enum { OVERLAY_MAX = 12, WIDTH = 800, HEIGHT = 600, SIDE_MIN = 320, SIDE_MAX = 2400 };
+enum { OVERLAY_MAX = 12 };
 
 /* One job to draw with what plot_input points to. */
 struct drawing {
@@ -60,9 +61,8 @@ static void plot_reply(struct request *request, struct reply *reply, const char 
   uint64_t tag = cache_tag();
   unsigned char *png = NULL;
   size_t size = 0;
-  int64_t width, height;
-  if (!request_query_integer(request, reply, "width", SIDE_MIN, SIDE_MAX, WIDTH, &width) ||
-      !request_query_integer(request, reply, "height", SIDE_MIN, SIDE_MAX, HEIGHT, &height)) {
+  struct plot_sheet sheet;
+  if (!picture_query(request, reply, &sheet)) {
     return;
   }
   struct drawing *drawings = calloc(count, sizeof *drawings);
@@ -77,7 +77,7 @@ static void plot_reply(struct request *request, struct reply *reply, const char 
     goto done;
   }
   if (status == STATUS_OK) {
-    status = plot_render(plot, inputs, count, (int)width, (int)height, &png, &size, &error);
+    status = plot_render(plot, inputs, count, &sheet, &png, &size, &error);
   }
   if (status == STATUS_OK) {
     reply_text(reply, "image/png", (char *)png, size);

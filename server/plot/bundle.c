@@ -52,7 +52,7 @@ enum status bundle_add(struct bundle *bundle, struct chart_series like, const st
 }
 
 enum status bundle_add_zero(struct bundle *bundle, struct error *error) {
-  struct chart_series like = {.guide = true, .colour = {0.62, 0.66, 0.70}, .width = 1.0};
+  struct chart_series like = {.guide = true, .colour = {.role = COLOUR_EDGE}, .width = 1.0};
   double reach = 0;
   for (size_t s = 0; s < bundle->count; s++) {
     for (size_t i = 0; i < bundle->series[s].count; i++) {

@@ -9,13 +9,14 @@ static double design_unit(int width, int height) {
   return ratio >= 1.0 ? ratio : fmax(pow(ratio, 0.36), 0.62);
 }
 
-struct canvas *canvas_create(int width, int height) {
+struct canvas *canvas_create(int width, int height, enum colour_theme theme) {
   struct canvas *canvas = calloc(1, sizeof *canvas);
   if (!canvas) {
     return NULL;
   }
   canvas->width = width;
   canvas->height = height;
+  canvas->theme = theme;
   canvas->unit = design_unit(width, height);
   canvas->surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
   canvas->cr = cairo_create(canvas->surface);
@@ -107,7 +108,13 @@ void canvas_text_upwards(struct canvas *canvas, double x, double y, const char *
 }
 
 void canvas_set_colour(struct canvas *canvas, struct colour colour) {
-  cairo_set_source_rgb(canvas->cr, colour.r, colour.g, colour.b);
+  struct rgb rgb = colour_rgb(colour, canvas->theme);
+  cairo_set_source_rgb(canvas->cr, rgb.r, rgb.g, rgb.b);
+}
+
+void canvas_set_glaze(struct canvas *canvas, struct colour colour, double alpha) {
+  struct rgb rgb = colour_rgb(colour, canvas->theme);
+  cairo_set_source_rgba(canvas->cr, rgb.r, rgb.g, rgb.b, alpha);
 }
 
 void canvas_line(struct canvas *canvas, double x0, double y0, double x1, double y1, double width) {

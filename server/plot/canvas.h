@@ -1,4 +1,4 @@
-/* A white sheet to draw on, with text, that ends as a PNG. */
+/* A sheet to draw on, with text, that ends as a PNG. */
 #ifndef PNEULAB_PLOT_CANVAS_H
 #define PNEULAB_PLOT_CANVAS_H
 
@@ -15,6 +15,7 @@ struct canvas {
   PangoLayout *layout; /* reused for every text */
   int width, height;
   double unit; /* pixels of one design unit: a line of width 1 on a sheet of 800 x 600 */
+  enum colour_theme theme;
 };
 
 struct text_style {
@@ -30,9 +31,9 @@ struct canvas_note {
   const char *text; /* NULL: left out */
 };
 
-/* Creates a white canvas. Design units shrink slower than the sheet, so that small pictures stay
- * legible. Returns NULL when memory ran out. */
-struct canvas *canvas_create(int width, int height);
+/* Creates an empty sheet of the theme's paper. Design units shrink slower than the sheet, so that
+ * small pictures stay legible. Returns NULL when memory ran out. */
+struct canvas *canvas_create(int width, int height, enum colour_theme theme);
 void canvas_destroy(struct canvas *canvas);
 
 /* Size of a text as canvas_text would draw it. Text may be any bytes: what is not UTF-8 shows as
@@ -55,6 +56,8 @@ void canvas_text_upwards(struct canvas *canvas, double x, double y, const char *
 
 /* Sets the colour of the following strokes and fills. */
 void canvas_set_colour(struct canvas *canvas, struct colour colour);
+/* The same for a colour through which a part (1 - alpha) of what is below shows. */
+void canvas_set_glaze(struct canvas *canvas, struct colour colour, double alpha);
 
 /* Strokes one straight line, sharp when it is upright or level: its centre is moved to the nearest
  * place where it covers whole pixels. width: design units. */

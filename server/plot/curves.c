@@ -125,7 +125,7 @@ static void make_series(struct family *family, const size_t *counts) {
     } else {
       family->series[first++] = (struct chart_series){.points = family->points[i],
                                                       .count = counts[i],
-                                                      .colour = {0.72, 0.74, 0.77},
+                                                      .colour = {.role = COLOUR_EDGE},
                                                       .width = 1.2};
     }
   }

@@ -151,7 +151,7 @@ static void draw_tensile(struct canvas *canvas, const struct plot_input *input,
                                           .count = t->has_range ? 2 : 0,
                                           .style = STYLE_SPAN,
                                           .guide = true,
-                                          .colour = {0.93, 0.94, 0.955},
+                                          .colour = colour_shade,
                                           .name = "range of the fit"};
   char subtitle[DATA_HEADING], notice[DATA_HEADING];
   data_subtitle(input, subtitle);

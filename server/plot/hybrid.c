@@ -208,7 +208,5 @@ struct colour hybrid_colour(size_t mode) {
 }
 
 struct colour hybrid_band(size_t mode) {
-  struct colour c = colour_series(mode);
-  const double part = 0.13;
-  return (struct colour){1 - part * (1 - c.r), 1 - part * (1 - c.g), 1 - part * (1 - c.b)};
+  return colour_fade(colour_series(mode), 0.87);
 }

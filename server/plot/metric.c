@@ -179,16 +179,16 @@ static size_t insert(struct point *points, double *errors, size_t count, struct 
 static void add_group(struct sheet *sheet, size_t group, size_t count, size_t published) {
   size_t start = group * sheet->members->count;
   bool columns = !sheet->x_pointer, alone = sheet->group_count == 1;
-  struct chart_series computed = {
-      .points = sheet->points + start,
-      .count = count,
-      .style = columns ? STYLE_COLUMNS : STYLE_LINE,
-      .colour = columns ? (struct colour){0.35, 0.6, 0.78} : colour_series(group),
-      .width = columns ? 0.62 : 2.0,
-      .marker = columns ? MARKER_NONE : (enum chart_marker)(MARKER_CIRCLE + group),
-      .dash = (enum chart_dash)(group % DASH_COUNT),
-      .errors = sheet->errors + start,
-      .name = alone ? "computed" : sheet->groups[group]};
+  struct chart_series computed = {.points = sheet->points + start,
+                                  .count = count,
+                                  .style = columns ? STYLE_COLUMNS : STYLE_LINE,
+                                  .colour = columns ? colour_column : colour_series(group),
+                                  .width = columns ? 0.62 : 2.0,
+                                  .marker = columns ? MARKER_NONE
+                                                    : (enum chart_marker)(MARKER_CIRCLE + group),
+                                  .dash = (enum chart_dash)(group % DASH_COUNT),
+                                  .errors = sheet->errors + start,
+                                  .name = alone ? "computed" : sheet->groups[group]};
   struct chart_series paper = {.points = sheet->published + start,
                                .count = published,
                                .colour = alone ? colour_series(1) : colour_series(group),

@@ -7,8 +7,6 @@
 #include "server/plot/draw.h"
 #include "server/plot/offer.h"
 
-enum { SIDE_MIN = 200, SIDE_MAX = 4000 };
-
 typedef enum status draw_function(struct canvas *, const struct plot_input *, size_t,
                                   struct error *);
 
@@ -140,8 +138,9 @@ static enum status encode(struct canvas *canvas, const struct plot_input *inputs
   return canvas_encode(canvas, notes, sizeof notes / sizeof *notes, png, size, error);
 }
 
-enum status plot_render(const char *plot, const struct plot_input *inputs, size_t count, int width,
-                        int height, unsigned char **png, size_t *size, struct error *error) {
+enum status plot_render(const char *plot, const struct plot_input *inputs, size_t count,
+                        const struct plot_sheet *sheet, unsigned char **png, size_t *size,
+                        struct error *error) {
   const struct entry *entry = NULL;
   if (count == 0 || count > DRAW_OVERLAY_LIMIT) {
     return error_set(error, STATUS_INVALID, NULL,
@@ -152,16 +151,10 @@ enum status plot_render(const char *plot, const struct plot_input *inputs, size_
   if (status != STATUS_OK) {
     return status;
   }
-  if (width < SIDE_MIN || width > SIDE_MAX || height < SIDE_MIN || height > SIDE_MAX) {
-    return error_set(error, STATUS_INVALID, NULL,
-                     "a picture of %d x %d pixels cannot be drawn; each side may have %d to %d, "
-                     "as in 800 x 600",
-                     width, height, SIDE_MIN, SIDE_MAX);
-  }
-  struct canvas *canvas = canvas_create(width, height);
-  if (!canvas) {
-    return error_set(error, STATUS_NO_MEMORY, NULL, "memory ran out for a picture of %d x %d",
-                     width, height);
+  struct canvas *canvas = NULL;
+  status = plot_sheet_open(sheet, &canvas, error);
+  if (status != STATUS_OK) {
+    return status;
   }
   status = entry->draw(canvas, inputs, count, error);
   if (status == STATUS_OK) {

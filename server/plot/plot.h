@@ -4,6 +4,7 @@
 
 #include <jansson.h>
 #include <stddef.h>
+#include "server/plot/sheet.h"
 #include "solver/base/error.h"
 
 /* One job to draw. The caller keeps everything alive during plot_render. */
@@ -30,14 +31,14 @@ const char *const *plot_names(const char *kind);
 void plot_names_for(const char *kind, const json_t *result, const char *names[PLOT_NAMES]);
 
 /* Draws `plot`: one of plot_names_for() from inputs[0], or "overlay" from all inputs.
- * width, height: pixels, 200 to 4000 each.
  * On success *png (allocated with malloc, the caller frees it) holds *size bytes.
  * A result without samples gives a picture that says so.
  * Errors: STATUS_NOT_FOUND (no such plot of this kind, or nothing in this result to draw: the
  * message says which),
  * STATUS_INVALID (size, number of inputs), STATUS_SYNTAX (a damaged artifact),
  * STATUS_TOO_LARGE, STATUS_NO_MEMORY, STATUS_IO. */
-enum status plot_render(const char *plot, const struct plot_input *inputs, size_t count, int width,
-                        int height, unsigned char **png, size_t *size, struct error *error);
+enum status plot_render(const char *plot, const struct plot_input *inputs, size_t count,
+                        const struct plot_sheet *sheet, unsigned char **png, size_t *size,
+                        struct error *error);
 
 #endif

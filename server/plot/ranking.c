@@ -60,8 +60,8 @@ static void fill(struct canvas *canvas, const struct frame *frame, double from, 
   cairo_fill(canvas->cr);
 }
 
-static const struct colour mean_colour = {0.0, 0.447, 0.698};
-static const struct colour evenness_colour = {0.60, 0.79, 0.92};
+static const struct colour mean_colour = {.role = COLOUR_SERIES};
+static const struct colour evenness_colour = {.role = COLOUR_COLUMN_UP};
 
 static void draw_bars(struct canvas *canvas, const struct frame *frame, const struct bar *bars,
                       size_t count, bool divided) {

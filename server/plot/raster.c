@@ -45,7 +45,7 @@ void raster_bring_forward(struct raster *raster) {
   }
 }
 
-static uint32_t pack(struct colour colour, double light) {
+static uint32_t pack(struct rgb colour, double light) {
   uint32_t r = (uint32_t)(255 * fmin(colour.r * light, 1.0) + 0.5);
   uint32_t g = (uint32_t)(255 * fmin(colour.g * light, 1.0) + 0.5);
   uint32_t b = (uint32_t)(255 * fmin(colour.b * light, 1.0) + 0.5);
@@ -57,7 +57,7 @@ static int clamp(double value, int limit) {
 }
 
 void raster_triangle(struct raster *raster, const struct raster_vertex corners[3],
-                     const struct colour shades[RASTER_SHADES], double light) {
+                     const struct rgb shades[RASTER_SHADES], double light) {
   const struct raster_vertex *a = &corners[0], *b = &corners[1], *c = &corners[2];
   double area = (b->x - a->x) * (c->y - a->y) - (c->x - a->x) * (b->y - a->y);
   if (fabs(area) < 1e-9) {
@@ -90,7 +90,7 @@ void raster_triangle(struct raster *raster, const struct raster_vertex corners[3
   }
 }
 
-void raster_line(struct raster *raster, const struct raster_vertex ends[2], struct colour colour,
+void raster_line(struct raster *raster, const struct raster_vertex ends[2], struct rgb colour,
                  double width, double bias) {
   double dx = ends[1].x - ends[0].x, dy = ends[1].y - ends[0].y;
   double dd = ends[1].depth - ends[0].depth, half = width / 2 + 0.05;

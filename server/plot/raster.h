@@ -32,10 +32,10 @@ void raster_bring_forward(struct raster *raster);
 
 /* Fills a triangle with shades[value], times `light` (0 to 1). */
 void raster_triangle(struct raster *raster, const struct raster_vertex corners[3],
-                     const struct colour shades[RASTER_SHADES], double light);
+                     const struct rgb shades[RASTER_SHADES], double light);
 
 /* Draws a line `width` samples wide where it is at most `bias` behind what is drawn already. */
-void raster_line(struct raster *raster, const struct raster_vertex ends[2], struct colour colour,
+void raster_line(struct raster *raster, const struct raster_vertex ends[2], struct rgb colour,
                  double width, double bias);
 
 /* Paints the averaged samples with their top left corner at (x, y). Error: false when memory ran

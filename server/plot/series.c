@@ -20,12 +20,6 @@ static void set_dash(struct canvas *canvas, enum chart_dash dash) {
   cairo_set_dash(canvas->cr, scaled, dash == DASH_SOLID ? 0 : 4, 0);
 }
 
-/* A colour mixed with the paper. */
-static struct colour tint(struct colour colour, double share) {
-  return (struct colour){1 - share * (1 - colour.r), 1 - share * (1 - colour.g),
-                         1 - share * (1 - colour.b)};
-}
-
 static void draw_polygon(cairo_t *cr, struct point at, const double (*corners)[2], int count,
                          double r) {
   for (int i = 0; i < count; i++) {
@@ -81,7 +75,7 @@ static void draw_marker(struct canvas *canvas, const struct chart_series *series
     draw_strokes(canvas, series->marker, at, series->colour, r);
     return;
   }
-  /* a white rim keeps neighbouring markers and crossing lines apart */
+  /* a rim of paper keeps neighbouring markers and crossing lines apart */
   canvas_set_colour(canvas, colour_paper);
   cairo_set_line_width(cr, (series->hollow ? 3.6 : series->small ? 0.4 : 1.6) * canvas->unit);
   cairo_stroke_preserve(cr);
@@ -107,7 +101,7 @@ static void draw_band(struct canvas *canvas, const struct frame *frame,
   }
   cairo_close_path(canvas->cr);
   /* bands that overlap stay visible */
-  cairo_set_source_rgba(canvas->cr, series->colour.r, series->colour.g, series->colour.b, 0.2);
+  canvas_set_glaze(canvas, series->colour, 0.2);
   cairo_fill(canvas->cr);
 }
 
@@ -224,7 +218,7 @@ void series_draw_sample(struct canvas *canvas, const struct chart_series *series
     return;
   }
   if (series->band) {
-    fill_box(canvas, (struct box){x, y - half, width, 2 * half}, tint(series->colour, 0.2));
+    fill_box(canvas, (struct box){x, y - half, width, 2 * half}, colour_fade(series->colour, 0.8));
   }
   struct chart_series line = *series;
   line.points = ends;

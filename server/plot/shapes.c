@@ -26,7 +26,7 @@ struct wall {
   struct box area;
 };
 
-static const struct colour silicone = {0.62, 0.78, 0.88}, pet = {0.835, 0.369, 0};
+static const struct colour silicone = {.role = COLOUR_SOFT}, pet = {.role = COLOUR_SERIES + 1};
 
 static void measure(const json_t *shape, struct gallery *gallery) {
   size_t r, i;
@@ -168,7 +168,7 @@ static void draw_shape(struct canvas *canvas, const struct gallery *gallery,
   double height = wall->scale * (gallery->high - gallery->low);
   double bottom = middle + height / 2, y = bottom + wall->scale * gallery->low;
   const double chain[4] = {8 * u, 3 * u, 1.5 * u, 3 * u};
-  canvas_set_colour(canvas, (struct colour){0.945, 0.955, 0.965});
+  canvas_set_colour(canvas, colour_shade);
   cairo_set_line_width(canvas->cr, 1);
   fill_between(canvas, gallery->shapes[place], x, y, wall->scale);
   fill_regions(canvas, gallery->shapes[place], false, x, y, wall->scale);

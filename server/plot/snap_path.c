@@ -17,11 +17,15 @@ struct kind {
 };
 
 static const struct kind kinds[KINDS] = {
-    {"limit point", "limit point", MARKER_DIAMOND, {0.835, 0.369, 0}, false},
-    {"stable state", "at rest without load", MARKER_CIRCLE, {0, 0.620, 0.451}, false},
-    {"loss of axisymmetry", "loss of axisymmetry", MARKER_TRIANGLE, {0.8, 0.475, 0.655}, false},
-    {"contact", "walls touch", MARKER_SQUARE, {0.110, 0.145, 0.188}, true},
-    {"yield", "PET yields", MARKER_CROSS, {0.659, 0.259, 0}, false},
+    {"limit point", "limit point", MARKER_DIAMOND, {.role = COLOUR_SERIES + 1}, false},
+    {"stable state", "at rest without load", MARKER_CIRCLE, {.role = COLOUR_SERIES + 2}, false},
+    {"loss of axisymmetry",
+     "loss of axisymmetry",
+     MARKER_TRIANGLE,
+     {.role = COLOUR_SERIES + 3},
+     false},
+    {"contact", "walls touch", MARKER_SQUARE, {.role = COLOUR_INK}, true},
+    {"yield", "PET yields", MARKER_CROSS, {.role = COLOUR_NOTICE}, false},
 };
 
 /* One of the two charts: pressure or force against elongation. */
@@ -116,14 +120,14 @@ static size_t find_paths(const json_t *result, enum snap_load load,
  * and light. */
 static enum status add_paths(const json_t *const paths[], bool words, struct sheet *sheet,
                              struct error *error) {
-  static const struct colour light[PATHS_MOST] = {
-      {0, 0, 0}, {0.72, 0.87, 0.96}, {0.98, 0.85, 0.60}, {0.93, 0.80, 0.88}};
+  static const size_t lighter[PATHS_MOST] = {0, 4, 5, 3};
   enum status status = STATUS_OK;
   for (size_t i = sheet->paths; i-- > 0 && status == STATUS_OK;) {
     const char *name = json_string_value(json_object_get(paths[i], "name"));
     struct snap_look look = {.x_key = "h_mm",
                              .y_key = sheet->y_key,
-                             .colour = i ? light[i] : colour_series(0),
+                             .colour =
+                                 i ? colour_fade(colour_series(lighter[i]), 0.6) : colour_series(0),
                              .stable_name = i       ? name
                                             : words ? "stable"
                                                     : NULL,

@@ -53,7 +53,7 @@ static double towards_viewer(struct skin_point n) {
 }
 
 static void fill(const struct skin *skin, const struct skin_point *points, const double *values,
-                 const struct colour *shades, double ambient, const struct view *view,
+                 const struct rgb *shades, double ambient, const struct view *view,
                  struct raster *raster) {
   for (size_t i = 0; i < skin->quad_count; i++) {
     const size_t *q = skin->quads[i];
@@ -105,7 +105,7 @@ static bool is_drawn(const struct skin *skin, const struct skin_point *points, c
 }
 
 static void outline(const struct skin *skin, const struct skin_point *points,
-                    const struct edge *edges, struct colour colour, double width,
+                    const struct edge *edges, struct rgb colour, double width,
                     const struct view *view, struct raster *raster) {
   size_t count = 4 * skin->quad_count;
   double bias = 1.5 * width / view->scale;
@@ -164,22 +164,24 @@ static double *scale_stretch(const struct skin *skin, struct colour_bar *bar) {
 }
 
 /* Draws both states into the raster; `values` colours the deformed one. */
-static void draw_states(const struct skin *skin, const double *values, const struct edge *edges,
-                        double unit, const struct view *view, struct raster *raster) {
-  struct colour shades[RASTER_SHADES];
-  double line = fmax(unit * raster->factor, 1.0);
+static void draw_states(const struct canvas *canvas, const struct skin *skin, const double *values,
+                        const struct edge *edges, const struct view *view, struct raster *raster) {
+  struct rgb shades[RASTER_SHADES];
+  double line = fmax(canvas->unit * raster->factor, 1.0);
   for (int i = 0; i < RASTER_SHADES; i++) {
-    shades[i] = (struct colour){0.93, 0.935, 0.945};
+    shades[i] = colour_rgb(colour_shade, canvas->theme);
   }
   fill(skin, skin->rest, NULL, shades, 0.94, view, raster);
-  outline(skin, skin->rest, edges, (struct colour){0.74, 0.76, 0.79}, line, view, raster);
+  outline(skin, skin->rest, edges, colour_rgb(colour_edge, canvas->theme), line, view, raster);
   raster_bring_forward(raster);
   for (int i = 0; i < RASTER_SHADES; i++) {
-    shades[i] =
-        values ? colour_map_area((i + 0.5) / RASTER_SHADES) : (struct colour){0.45, 0.62, 0.78};
+    struct colour shade =
+        values ? colour_map_area((i + 0.5) / RASTER_SHADES) : (struct colour){.role = COLOUR_BODY};
+    shades[i] = colour_rgb(shade, canvas->theme);
   }
   fill(skin, skin->bent, values, shades, 0.74, view, raster);
-  outline(skin, skin->bent, edges, (struct colour){0.10, 0.12, 0.16}, line, view, raster);
+  struct rgb edge = colour_rgb((struct colour){.role = COLOUR_OUTLINE}, canvas->theme);
+  outline(skin, skin->bent, edges, edge, line, view, raster);
 }
 
 /* The strip below the body: a bar of round length, and what the grey body is. */
@@ -202,9 +204,9 @@ static void draw_scale(struct canvas *canvas, double mm, double left, double y,
   canvas_measure(canvas, text, &style, &width, &height);
   double key = right + 8 * u + width + 28 * u;
   cairo_rectangle(canvas->cr, key, y - 5 * u, 18 * u, 10 * u);
-  cairo_set_source_rgb(canvas->cr, 0.93, 0.935, 0.945);
+  canvas_set_colour(canvas, colour_shade);
   cairo_fill_preserve(canvas->cr);
-  cairo_set_source_rgb(canvas->cr, 0.74, 0.76, 0.79);
+  canvas_set_colour(canvas, colour_edge);
   cairo_set_line_width(canvas->cr, u);
   cairo_stroke(canvas->cr);
   ticks_plain(skin->rest_kPa, 3, number);
@@ -224,7 +226,7 @@ static enum status draw_body(struct canvas *canvas, const struct skin *skin, str
     goto done;
   }
   struct view view = fit_view(skin, raster);
-  draw_states(skin, values, edges, canvas->unit, &view, raster);
+  draw_states(canvas, skin, values, edges, &view, raster);
   if (!raster_paint(raster, canvas->cr, round(area.x), round(area.y))) {
     status = error_set(error, STATUS_NO_MEMORY, NULL, "memory ran out while drawing a surface");
     goto done;

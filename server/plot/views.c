@@ -96,8 +96,7 @@ static void draw_lines(struct canvas *canvas, const struct frame *frame, const s
     struct point b = project(frame, view, &path->points[i]);
     cairo_move_to(canvas->cr, a.x, a.y);
     cairo_line_to(canvas->cr, b.x, b.y);
-    canvas_set_colour(canvas,
-                      path->light ? (struct colour){0.80, 0.82, 0.84} : path->points[i].colour);
+    canvas_set_colour(canvas, path->light ? colour_faint : path->points[i].colour);
     cairo_set_line_width(canvas->cr, path->width * canvas->unit);
     cairo_set_line_cap(canvas->cr, CAIRO_LINE_CAP_ROUND);
     cairo_stroke(canvas->cr);

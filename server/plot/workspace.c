@@ -46,23 +46,6 @@ static void row_pressures(const struct member *member, const json_t *sample, dou
   }
 }
 
-/* Grey without pressure, blue for the left row, orange for the right one, dark for both. */
-static struct colour row_colour(double left, double right) {
-  static const struct colour corners[2][2] = {{{0.76, 0.77, 0.79}, {0.90, 0.52, 0.0}},
-                                              {{0.0, 0.45, 0.74}, {0.16, 0.05, 0.22}}};
-  double l = fmin(fmax(left, 0), 1), r = fmin(fmax(right, 0), 1);
-  const double weights[2][2] = {{(1 - l) * (1 - r), (1 - l) * r}, {l * (1 - r), l * r}};
-  struct colour colour = {0, 0, 0};
-  for (int i = 0; i < 2; i++) {
-    for (int k = 0; k < 2; k++) {
-      colour.r += weights[i][k] * corners[i][k].r;
-      colour.g += weights[i][k] * corners[i][k].g;
-      colour.b += weights[i][k] * corners[i][k].b;
-    }
-  }
-  return colour;
-}
-
 /* Whether all positions have known row pressures; finds the highest pressure too. */
 static void choose_colours(struct workspace *space) {
   space->rows = true;
@@ -100,7 +83,7 @@ static void add_path(struct workspace *space, const struct member *member) {
     }
     row_pressures(member, sample, rows);
     if (space->rows) {
-      p.colour = row_colour(rows[0] / space->top_kPa, rows[1] / space->top_kPa);
+      p.colour = colour_map_plane(rows[1] / space->top_kPa, rows[0] / space->top_kPa);
     } else if (isfinite(pressure)) {
       p.colour = colour_map_line(pressure / space->top_kPa);
     }
@@ -156,7 +139,7 @@ static void draw_key(struct canvas *canvas, struct box area, const void *context
     double x1 = round(frame.area.x + side * (column + 1) / CELLS);
     double y0 = round(frame.area.y + side * row / CELLS);
     double y1 = round(frame.area.y + side * (row + 1) / CELLS);
-    canvas_set_colour(canvas, row_colour(1 - (row + 0.5) / CELLS, (column + 0.5) / CELLS));
+    canvas_set_colour(canvas, colour_map_plane((column + 0.5) / CELLS, 1 - (row + 0.5) / CELLS));
     cairo_rectangle(canvas->cr, x0, y0, x1 - x0, y1 - y0);
     cairo_fill(canvas->cr);
   }

@@ -34,6 +34,10 @@ fetch GET /api/v1/jobs/1/attempts
 check "one attempt" '[1,"succeeded",0]' "$(field '.attempts[] | [.number, .outcome, .exit_code]')"
 fetch GET /api/v1/jobs/1/document
 check "the document as submitted" "$(job | jq -cS .)" "$(printf '%s' "$BODY" | jq -cS .)"
+fetch GET '/api/v1/jobs/1/plots/angle.png?theme=blue'
+check "a picture has one of two themes" 400 "$CODE"
+fetch GET '/api/v1/jobs/1/plots/angle.png?theme=dark'
+check "a dark picture" 200 "$CODE"
 fetch GET '/api/v1/jobs/1/plots/angle.png?width=640&height=480'
 check "plot type" image/png "$(header Content-Type)"
 check "plot width" "640" "$(od -An -tu1 -j16 -N4 "$WORK/body" | awk '{ print (($1*256+$2)*256+$3)*256+$4 }')"

@@ -49,7 +49,8 @@ struct picture picture_draw(const char *plot, const struct plot_input *inputs, s
   unsigned char *png = NULL;
   size_t size = 0;
   struct error error = {0};
-  enum status status = plot_render(plot, inputs, count, width, height, &png, &size, &error);
+  struct plot_sheet sheet = {.width = width, .height = height};
+  enum status status = plot_render(plot, inputs, count, &sheet, &png, &size, &error);
   ck_assert_msg(status == STATUS_OK, "%s: %s", plot, error.message);
   keep(name, png, size);
   struct picture picture = decode(png, size);
@@ -64,7 +65,8 @@ enum status picture_refuse(const char *plot, const struct plot_input *inputs, si
   unsigned char *png = NULL;
   size_t size = 0;
   struct error error = {0};
-  enum status status = plot_render(plot, inputs, count, width, height, &png, &size, &error);
+  struct plot_sheet sheet = {.width = width, .height = height};
+  enum status status = plot_render(plot, inputs, count, &sheet, &png, &size, &error);
   ck_assert_ptr_null(png);
   ck_assert_int_eq(error.status, status);
   ck_assert_uint_gt(strlen(error.message), 10);
@@ -100,9 +102,27 @@ static struct plot_input input_of(const json_t *result, const char *title) {
   return (struct plot_input){.result = result, .title = title, .job_id = 7};
 }
 
+/* Draws on a dark sheet: its words are light, and the paper is dark from edge to edge. */
+static void draw_dark(const char *plot, const struct plot_input *input, const char *name) {
+  unsigned char *png = NULL;
+  size_t size = 0;
+  char file[80];
+  struct plot_sheet sheet = {.width = 800, .height = 600, .theme = THEME_DARK};
+  ck_assert_int_eq(plot_render(plot, input, 1, &sheet, &png, &size, NULL), STATUS_OK);
+  snprintf(file, sizeof file, "%s-%s-dark", plot, name);
+  keep(file, png, size);
+  struct picture picture = decode(png, size);
+  ck_assert_uint_gt(picture_count(&picture, 231, 235, 240), 30);
+  ck_assert_uint_gt(picture_count(&picture, 26, 33, 42), 800 * 600 / 5);
+  ck_assert_uint_lt(picture_count(&picture, 255, 255, 255), 800 * 600 / 100);
+  free(picture.rgb);
+  free(png);
+}
+
 void picture_at_all_sizes(const char *plot, const json_t *result, const char *name) {
   static const int sizes[][2] = {{900, 650}, {1600, 1200}, {400, 300}, {200, 200}, {4000, 200}};
   struct plot_input input = input_of(result, name);
+  draw_dark(plot, &input, name);
   for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
     char file[80];
     snprintf(file, sizeof file, "%s-%s-%d", plot, name, sizes[i][0]);

@@ -16,6 +16,7 @@
   "it has two hundred characters and more, which no subtitle can show without cutting it "                   \
   "somewhere near the end"
 
+static const struct plot_sheet plain = {.width = 800, .height = 600};
 static char directory[] = "/tmp/plot-test-XXXXXX";
 
 static void write_surface(const char *text) {
@@ -317,7 +318,7 @@ START_TEST(the_file_says_where_it_comes_from) {
   struct plot_input input = {result, NULL, "", 4711, "0123456789abcdef", NULL};
   unsigned char *png = NULL;
   size_t size = 0;
-  ck_assert_int_eq(plot_render("angle", &input, 1, 800, 600, &png, &size, NULL), STATUS_OK);
+  ck_assert_int_eq(plot_render("angle", &input, 1, &plain, &png, &size, NULL), STATUS_OK);
   ck_assert(has_bytes(png, size, "tEXtJob"));
   ck_assert(has_bytes(png, size, "4711"));
   ck_assert(has_bytes(png, size, "0123456789abcdef"));
@@ -339,7 +340,7 @@ static void *draw_often(void *argument) {
   for (int i = 0; i < 12; i++) {
     free(work->png);
     work->png = NULL;
-    if (plot_render(i % 2 ? "angle" : "midline", work->input, 1, 800, 600, &work->png, &work->size,
+    if (plot_render(i % 2 ? "angle" : "midline", work->input, 1, &plain, &work->png, &work->size,
                     NULL) != STATUS_OK) {
       return NULL;
     }

@@ -18,6 +18,8 @@ static const char *const all_plots[] = {
     "held",     "stability", "coefficients", "fitted",    "control", "snap",      "overlay"};
 enum { ALL = sizeof all_plots / sizeof *all_plots };
 
+static const struct plot_sheet small = {.width = 220, .height = 200};
+
 /* Draws everything that a document may be drawn as: a picture or a refusal, nothing else. */
 static void draw_whatever(json_t *document) {
   for (size_t k = 0; k < ALL; k++) {
@@ -25,7 +27,7 @@ static void draw_whatever(json_t *document) {
     unsigned char *png = NULL;
     size_t size = 0;
     struct error error = {0};
-    enum status status = plot_render(all_plots[k], &input, 1, 220, 200, &png, &size, &error);
+    enum status status = plot_render(all_plots[k], &input, 1, &small, &png, &size, &error);
     ck_assert_msg(status == STATUS_OK || status == STATUS_NOT_FOUND, "%s: %s", all_plots[k],
                   error.message);
     ck_assert_int_eq(png != NULL, status == STATUS_OK);

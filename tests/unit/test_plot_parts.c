@@ -159,31 +159,67 @@ static double linear(double c) {
 }
 
 /* Relative luminance as in WCAG 2. */
-static double luminance(struct colour c) {
+static double luminance(struct colour colour, enum colour_theme theme) {
+  struct rgb c = colour_rgb(colour, theme);
   return 0.2126 * linear(c.r) + 0.7152 * linear(c.g) + 0.0722 * linear(c.b);
 }
 
+/* Contrast against the paper as in WCAG 2. */
+static double contrast(struct colour colour, enum colour_theme theme) {
+  double a = luminance(colour, theme), b = luminance(colour_paper, theme);
+  return (fmax(a, b) + 0.05) / (fmin(a, b) + 0.05);
+}
+
 START_TEST(maps_get_lighter_and_lines_stay_visible) {
+  enum colour_theme theme = (enum colour_theme)_i;
   double before = -1, line_before = -1;
   for (int i = 0; i <= 100; i++) {
-    double area = luminance(colour_map_area(i / 100.0)),
-           line = luminance(colour_map_line(i / 100.0));
+    double area = luminance(colour_map_area(i / 100.0), theme),
+           line = luminance(colour_map_line(i / 100.0), theme);
     ck_assert_double_gt(area, before);
     ck_assert_double_gt(line, line_before);
-    ck_assert_double_ge(1.05 / (line + 0.05), 3.0);
+    ck_assert_double_ge(contrast(colour_map_line(i / 100.0), theme), 3.0);
     before = area;
     line_before = line;
   }
-  ck_assert_double_eq(luminance(colour_map_area(-3)), luminance(colour_map_area(0)));
-  ck_assert_double_eq(luminance(colour_map_area(9)), luminance(colour_map_area(1)));
-  ck_assert_double_lt(luminance(colour_map_area(NAN)), 1);
+  ck_assert_double_eq(luminance(colour_map_area(-3), theme), luminance(colour_map_area(0), theme));
+  ck_assert_double_eq(luminance(colour_map_area(9), theme), luminance(colour_map_area(1), theme));
+  ck_assert_double_lt(luminance(colour_map_area(NAN), theme), 1);
 }
 END_TEST
 
 START_TEST(words_have_contrast) {
-  ck_assert_double_ge(1.05 / (luminance(colour_ink) + 0.05), 7.0);
-  ck_assert_double_ge(1.05 / (luminance(colour_muted) + 0.05), 4.5);
-  ck_assert_double_ge(1.05 / (luminance(colour_notice) + 0.05), 4.5);
+  enum colour_theme theme = (enum colour_theme)_i;
+  ck_assert_double_ge(contrast(colour_ink, theme), 7.0);
+  ck_assert_double_ge(contrast(colour_muted, theme), 4.5);
+  ck_assert_double_ge(contrast(colour_notice, theme), 4.5);
+}
+END_TEST
+
+/* The lightest curves of the palette have less than 3:1 on white; marks and dashes tell them. */
+START_TEST(curves_are_seen_on_either_sheet) {
+  enum colour_theme theme = (enum colour_theme)_i;
+  for (size_t i = 0; i < COLOUR_SERIES_COUNT; i++) {
+    ck_assert_double_ge(contrast(colour_series(i), theme), theme == THEME_DARK ? 4.0 : 2.2);
+  }
+}
+END_TEST
+
+START_TEST(faded_colours_end_in_the_paper) {
+  enum colour_theme theme = (enum colour_theme)_i;
+  double paper = luminance(colour_paper, theme);
+  ck_assert_double_eq_tol(luminance(colour_fade(colour_ink, 1), theme), paper, 1e-12);
+  ck_assert_double_eq(luminance(colour_fade(colour_ink, 0), theme), luminance(colour_ink, theme));
+  double half = luminance(colour_fade(colour_ink, 0.5), theme), ink = luminance(colour_ink, theme);
+  ck_assert(half > fmin(ink, paper) && half < fmax(ink, paper));
+}
+END_TEST
+
+START_TEST(themes_have_names) {
+  enum colour_theme theme = THEME_COUNT;
+  ck_assert(colour_theme_of("dark", &theme) && theme == THEME_DARK);
+  ck_assert(colour_theme_of("light", &theme) && theme == THEME_LIGHT);
+  ck_assert(!colour_theme_of("Dark", &theme) && !colour_theme_of("", &theme));
 }
 END_TEST
 
@@ -198,8 +234,11 @@ int main(void) {
   tcase_add_test(parts, numbers);
   tcase_add_test(parts, places_avoid_what_is_there);
   tcase_add_test(parts, a_label_stays_beside_its_point);
-  tcase_add_test(parts, maps_get_lighter_and_lines_stay_visible);
-  tcase_add_test(parts, words_have_contrast);
+  tcase_add_loop_test(parts, maps_get_lighter_and_lines_stay_visible, 0, THEME_COUNT);
+  tcase_add_loop_test(parts, words_have_contrast, 0, THEME_COUNT);
+  tcase_add_loop_test(parts, curves_are_seen_on_either_sheet, 0, THEME_COUNT);
+  tcase_add_loop_test(parts, faded_colours_end_in_the_paper, 0, THEME_COUNT);
+  tcase_add_test(parts, themes_have_names);
   suite_add_tcase(suite, parts);
   SRunner *runner = srunner_create(suite);
   srunner_run_all(runner, CK_NORMAL);
