@@ -3,7 +3,7 @@
 # API_RECORD; so they run before this.
 description=$PWD/schema/bundle/openapi.json
 # shellcheck source-path=SCRIPTDIR
-. "$(dirname "$0")/setup.sh"
+. "$(dirname "$0")/../npm.sh"
 if ! ls "$API_RECORD"/*.record > /dev/null 2>&1; then
   echo "FAILED: there are no records in ${API_RECORD:-API_RECORD}"
   exit 1
