@@ -7,6 +7,7 @@
 
 #include "server/store/sql.h"
 #include "solver/base/units.h"
+#include "solver/job/json.h"
 
 /* A dimension met in jobs: a unit of it, and the SI unit in which its values are stored. */
 static const struct {
@@ -19,10 +20,9 @@ static const struct {
 };
 
 struct flattening {
-  sqlite3 *db;
-  sqlite3_stmt *insert;
-  int64_t job_id;
   const struct units *units;
+  parameter_take *take;
+  void *context;
   struct error *error;
   char pointer[512];
 };
@@ -44,35 +44,24 @@ static bool quantity_read(const struct units *units, const char *text, double *v
 
 static enum status flatten_leaf(struct flattening *to, const json_t *leaf) {
   char number[32];
-  const char *text = number, *unit = "";
-  double value = 0;
-  bool has_value = true;
+  struct parameter parameter = {
+      .pointer = to->pointer, .text = number, .unit = "", .has_value = true};
   if (json_is_string(leaf)) {
-    text = json_string_value(leaf);
-    has_value = quantity_read(to->units, text, &value, &unit);
+    parameter.text = json_string_value(leaf);
+    parameter.has_value =
+        quantity_read(to->units, parameter.text, &parameter.value, &parameter.unit);
   } else if (json_is_integer(leaf)) {
-    value = (double)json_integer_value(leaf);
+    parameter.value = (double)json_integer_value(leaf);
     snprintf(number, sizeof number, "%lld", (long long)json_integer_value(leaf));
   } else if (json_is_real(leaf)) {
-    value = json_real_value(leaf);
-    snprintf(number, sizeof number, "%.17g", value);
+    parameter.value = json_real_value(leaf);
+    snprintf(number, sizeof number, "%.17g", parameter.value);
   } else {
-    value = json_is_true(leaf);
-    has_value = json_is_boolean(leaf);
-    text = json_is_true(leaf) ? "true" : json_is_false(leaf) ? "false" : "null";
+    parameter.value = json_is_true(leaf);
+    parameter.has_value = json_is_boolean(leaf);
+    parameter.text = json_is_true(leaf) ? "true" : json_is_false(leaf) ? "false" : "null";
   }
-  sqlite3_reset(to->insert);
-  sqlite3_bind_int64(to->insert, 1, to->job_id);
-  sqlite3_bind_text(to->insert, 2, to->pointer, -1, SQLITE_STATIC);
-  if (has_value) {
-    sqlite3_bind_double(to->insert, 3, value);
-  } else {
-    sqlite3_bind_null(to->insert, 3);
-  }
-  sqlite3_bind_text(to->insert, 4, text, -1, SQLITE_STATIC);
-  sqlite3_bind_text(to->insert, 5, unit, -1, SQLITE_STATIC);
-  int row;
-  return sql_step(to->insert, &row, to->error);
+  return to->take(to->context, &parameter, to->error);
 }
 
 /* Appends "/key" with ~ and / escaped (RFC 6901); false when the pointer gets too long. */
@@ -144,17 +133,64 @@ static enum status flatten_value(struct flattening *to, const json_t *value) {
   return status;
 }
 
-enum status flatten_store(sqlite3 *db, int64_t job_id, const json_t *root,
-                          const struct units *units, struct error *error) {
-  struct flattening to = {.db = db, .job_id = job_id, .units = units, .error = error};
-  enum status status =
-      sql_prepare(db, &to.insert, error,
-                  "INSERT OR REPLACE INTO design_parameter (job_id, pointer, value, text, unit) "
-                  "VALUES (?, ?, ?, ?, ?)",
-                  "");
-  if (status == STATUS_OK) {
-    status = flatten_value(&to, root);
-    sql_done(to.insert);
+enum status flatten_each(const char *document, const struct units *units, parameter_take *take,
+                         void *context, struct error *error) {
+  struct flattening to = {.units = units, .take = take, .context = context, .error = error};
+  json_t *root = json_read(document, strlen(document), 0, NULL);
+  if (!root) {
+    return error_set(error, STATUS_NO_MEMORY, NULL, "No memory for a job document.");
   }
+  enum status status = flatten_value(&to, root);
+  json_decref(root);
+  return status;
+}
+
+/* ---- into the database ------------------------------------------------------------------- */
+
+struct insertion {
+  sqlite3_stmt *insert;
+  int64_t job_id;
+};
+
+static enum status parameter_insert(void *context, const struct parameter *parameter,
+                                    struct error *error) {
+  const struct insertion *insertion = context;
+  sqlite3_stmt *insert = insertion->insert;
+  sqlite3_reset(insert);
+  sqlite3_bind_int64(insert, 1, insertion->job_id);
+  sqlite3_bind_text(insert, 2, parameter->pointer, -1, SQLITE_STATIC);
+  if (parameter->has_value) {
+    sqlite3_bind_double(insert, 3, parameter->value);
+  } else {
+    sqlite3_bind_null(insert, 3);
+  }
+  sqlite3_bind_text(insert, 4, parameter->text, -1, SQLITE_STATIC);
+  sqlite3_bind_text(insert, 5, parameter->unit, -1, SQLITE_STATIC);
+  int row;
+  return sql_step(insert, &row, error);
+}
+
+enum status flatten_store(sqlite3 *db, int64_t job_id, const struct units *units,
+                          struct error *error) {
+  struct insertion insertion = {.job_id = job_id};
+  sqlite3_stmt *statement;
+  int row = 0;
+  enum status status =
+      sql_prepare(db, &statement, error, "SELECT document FROM job WHERE id = ?", "i", job_id);
+  if (status == STATUS_OK) {
+    status = sql_step(statement, &row, error);
+  }
+  if (status == STATUS_OK && row) {
+    status =
+        sql_prepare(db, &insertion.insert, error,
+                    "INSERT OR REPLACE INTO design_parameter (job_id, pointer, value, text, unit) "
+                    "VALUES (?, ?, ?, ?, ?)",
+                    "");
+    if (status == STATUS_OK) {
+      status = flatten_each(sql_text(statement, 0), units, parameter_insert, &insertion, error);
+      sql_done(insertion.insert);
+    }
+  }
+  sql_done(statement);
   return status;
 }

@@ -3,6 +3,7 @@
 
 #include "server/base/clock.h"
 #include "server/store/connection.h"
+#include "server/store/flatten.h"
 #include "server/store/sql.h"
 
 /* See the table submitter in schema/0003-queue.sql. */
@@ -98,8 +99,9 @@ static enum status claim_next(struct store *store, struct claim *claim, struct e
   return STATUS_OK;
 }
 
-static enum status claim_take(sqlite3 *db, const struct claim *claim, int64_t now,
+static enum status claim_take(struct store *store, const struct claim *claim, int64_t now,
                               struct error *error) {
+  sqlite3 *db = store->writer;
   enum status status = sql_run(db, error,
                                "UPDATE job SET state = 'starting', attempt = ?, started_ms = ?, "
                                "retry_due = 0, reason_code = '', message = '' WHERE id = ?",
@@ -107,6 +109,9 @@ static enum status claim_take(sqlite3 *db, const struct claim *claim, int64_t no
   if (status == STATUS_OK) {
     status = sql_run(db, error, "INSERT INTO attempt (job_id, number, created_ms) VALUES (?, ?, ?)",
                      "iii", claim->job_id, claim->attempt, now);
+  }
+  if (status == STATUS_OK && claim->attempt == 1) {
+    status = flatten_store(db, claim->job_id, store->units, error);
   }
   return status;
 }
@@ -128,7 +133,7 @@ enum status store_claim(struct store *store, struct claim *claim, bool *claimed,
     status = claim_next(store, claim, error);
   }
   if (status == STATUS_OK && claim->job_id != 0) {
-    status = claim_take(store->writer, claim, now, error);
+    status = claim_take(store, claim, now, error);
   }
   status = store_write_end(store, status, error);
   *claimed = status == STATUS_OK && claim->job_id != 0;

@@ -3,6 +3,7 @@
 
 #include "server/base/clock.h"
 #include "server/store/connection.h"
+#include "server/store/flatten.h"
 #include "server/store/sql.h"
 
 void job_record_clear(struct job_record *record) {
@@ -48,13 +49,27 @@ static void take_name(json_t *into, sqlite3_stmt *row) {
   json_array_append_new(into, json_string(sql_text(row, 0)));
 }
 
+static void parameter_add(json_t *into, const struct parameter *parameter) {
+  json_t *value = parameter->has_value ? json_real(parameter->value) : json_null();
+  json_object_set_new(into, parameter->pointer,
+                      json_pack("{s:o, s:s, s:s}", "value", value, "text", parameter->text, "unit",
+                                parameter->unit));
+}
+
 static void take_parameter(json_t *into, sqlite3_stmt *row) {
-  json_t *value = sqlite3_column_type(row, 1) == SQLITE_NULL
-                      ? json_null()
-                      : json_real(sqlite3_column_double(row, 1));
-  json_object_set_new(into, sql_text(row, 0),
-                      json_pack("{s:o, s:s, s:s}", "value", value, "text", sql_text(row, 2), "unit",
-                                sql_text(row, 3)));
+  struct parameter parameter = {.pointer = sql_text(row, 0),
+                                .has_value = sqlite3_column_type(row, 1) != SQLITE_NULL,
+                                .value = sqlite3_column_double(row, 1),
+                                .text = sql_text(row, 2),
+                                .unit = sql_text(row, 3)};
+  parameter_add(into, &parameter);
+}
+
+static enum status take_leaf(void *context, const struct parameter *parameter,
+                             struct error *error) {
+  (void)error;
+  parameter_add(context, parameter);
+  return STATUS_OK;
 }
 
 static json_t *optional_integer(sqlite3_stmt *row, int column) {
@@ -270,9 +285,29 @@ enum status store_attempts(struct store *store, int64_t id, json_t **attempts,
                        id, json_array(), take_attempt, attempts, error);
 }
 
+/* Those of a job that has not started yet, from its document. */
+static enum status parameters_of_document(struct store *store, int64_t id, json_t *into,
+                                          struct error *error) {
+  char *document = NULL;
+  enum status status = store_document(store, id, &document, error);
+  if (status == STATUS_OK) {
+    status = flatten_each(document, store->units, take_leaf, into, error);
+    free(document);
+  }
+  return status;
+}
+
 enum status store_parameters(struct store *store, int64_t id, json_t **parameters,
                              struct error *error) {
-  return job_rows_read(store,
-                       "SELECT pointer, value, text, unit FROM design_parameter WHERE job_id = ?",
-                       id, json_object(), take_parameter, parameters, error);
+  enum status status = job_rows_read(
+      store, "SELECT pointer, value, text, unit FROM design_parameter WHERE job_id = ?", id,
+      json_object(), take_parameter, parameters, error);
+  if (status == STATUS_OK && json_object_size(*parameters) == 0) {
+    status = parameters_of_document(store, id, *parameters, error);
+    if (status != STATUS_OK) {
+      json_decref(*parameters);
+      *parameters = NULL;
+    }
+  }
+  return status;
 }

@@ -3,6 +3,7 @@
 
 #include "server/base/clock.h"
 #include "server/store/connection.h"
+#include "server/store/flatten.h"
 #include "server/store/sql.h"
 #include "solver/job/json.h"
 
@@ -56,13 +57,14 @@ static enum status answer_find(sqlite3 *db, int64_t id, struct answer *answer,
 }
 
 /* Copies the rows of the result; the job gets an attempt without a worker to hang them on. */
-static enum status answer_copy(sqlite3 *db, const struct answer *answer, const char *directory,
-                               struct error *error) {
+static enum status answer_copy(struct store *store, const struct answer *answer,
+                               const char *directory, struct error *error) {
   static const char *const copies[] = {
       "INSERT INTO metric SELECT ?2, name, value FROM metric WHERE job_id = ?1",
       "INSERT INTO sample SELECT ?2, step, name, value FROM sample WHERE job_id = ?1",
       "INSERT INTO artifact SELECT ?2, name, size FROM artifact WHERE job_id = ?1"};
   int64_t id = answer->asker, now = clock_unix_ms();
+  sqlite3 *db = store->writer;
   enum status status =
       sql_run(db, error,
               "INSERT INTO attempt (job_id, number, outcome, message, created_ms, finished_ms) "
@@ -84,6 +86,9 @@ static enum status answer_copy(sqlite3 *db, const struct answer *answer, const c
                      "finished_ms = ?, reused_from = ?, solver_version = ? WHERE id = ?",
                      "iiiiiti", answer->job_id, answer->attempt, now, now, answer->solved_by,
                      PNEULAB_VERSION, id);
+  }
+  if (status == STATUS_OK) {
+    status = flatten_store(db, id, store->units, error);
   }
   return status;
 }
@@ -115,7 +120,7 @@ enum status reuse_try(struct store *store, int64_t id, enum reuse *reuse, struct
                             answer.attempt, directory, NULL) == STATUS_OK;
   }
   if (answered) {
-    status = answer_copy(store->writer, &answer, directory, error);
+    status = answer_copy(store, &answer, directory, error);
     *reuse = REUSE_ANSWERED;
   } else if (status == STATUS_OK) {
     status = wait_for_equal(store->writer, id, &waits, error);

@@ -86,9 +86,6 @@ static enum status submission_insert(struct store *store, const struct submissio
   }
   *id = sqlite3_last_insert_rowid(db);
   status = submission_labels(db, *id, json_object_get(submission->root, "labels"), error);
-  if (status == STATUS_OK) {
-    status = flatten_store(db, *id, submission->root, store->units, error);
-  }
   if (status == STATUS_OK && submission->reuse) {
     enum reuse reuse;
     status = reuse_try(store, *id, &reuse, error);
@@ -155,6 +152,9 @@ enum status store_cancel(struct store *store, int64_t id, enum job_state *state,
                      "UPDATE job SET state = 'cancelled', reason_code = 'cancel_requested', "
                      "message = 'Cancelled before it started.', finished_ms = ? WHERE id = ?",
                      "ii", clock_unix_ms(), id);
+    if (status == STATUS_OK) {
+      status = flatten_store(store->writer, id, store->units, error);
+    }
   }
   return store_write_end(store, status, error);
 }

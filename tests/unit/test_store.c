@@ -18,8 +18,37 @@ START_TEST(job_survives_reopening) {
 }
 END_TEST
 
+/* Whoever asks for the parameters of a job before they are rows is answered from its document. */
+START_TEST(parameters_are_the_same_before_and_after_the_start) {
+  struct error error;
+  json_t *before, *after;
+  int64_t id = submit();
+  ck_assert_int_eq(store_parameters(store, id, &before, &error), STATUS_OK);
+  ck_assert_uint_gt(json_object_size(before), 3);
+  ck_assert_double_eq(sql_number("SELECT count(*) FROM design_parameter"), 0);
+  claim_next();
+  ck_assert_double_eq(sql_number("SELECT count(*) FROM design_parameter"),
+                      (double)json_object_size(before));
+  ck_assert_int_eq(store_parameters(store, id, &after, &error), STATUS_OK);
+  ck_assert(json_equal(before, after));
+  json_decref(before);
+  json_decref(after);
+}
+END_TEST
+
+START_TEST(a_job_cancelled_before_its_start_has_parameters) {
+  struct error error;
+  enum job_state state;
+  int64_t id = submit();
+  ck_assert_int_eq(store_cancel(store, id, &state, &error), STATUS_OK);
+  ck_assert_double_eq(
+      sql_number("SELECT value FROM design_parameter WHERE pointer = '/actuator/count'"), 3);
+}
+END_TEST
+
 START_TEST(parameters_are_flattened_in_si) {
   submit();
+  claim_next();
   ck_assert_double_eq_tol(
       sql_number("SELECT value FROM design_parameter WHERE pointer = '/actuator/height' "
                  "AND unit = 'm'"),
@@ -261,6 +290,8 @@ int main(void) {
   tcase_set_timeout(tests, 60);
   tcase_add_test(tests, job_survives_reopening);
   tcase_add_test(tests, parameters_are_flattened_in_si);
+  tcase_add_test(tests, parameters_are_the_same_before_and_after_the_start);
+  tcase_add_test(tests, a_job_cancelled_before_its_start_has_parameters);
   tcase_add_test(tests, idempotency_key_names_one_job);
   tcase_add_test(tests, oldest_job_is_claimed_first_and_once);
   tcase_add_test(tests, result_arrives_with_the_state);
