@@ -101,6 +101,29 @@ static void check_answer(const char *answer, size_t size) {
   }
 }
 
+/* A new connection to the daemon. A timer's signal may interrupt connect(), which then goes on by
+ * itself. */
+static int connection_open(void) {
+  int connection = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  struct pollfd made = {.fd = connection, .events = POLLOUT};
+  if (connection >= 0 &&
+      connect(connection, (const struct sockaddr *)&address, sizeof address) == 0) {
+    return connection;
+  }
+  while (connection >= 0 && errno == EINTR) {
+    int reason = 0;
+    if (poll(&made, 1, -1) == 1) {
+      getsockopt(connection, SOL_SOCKET, SO_ERROR, &reason, &(socklen_t){sizeof reason});
+      if (reason == 0) {
+        return connection;
+      }
+      errno = reason;
+    }
+  }
+  perror("fuzz_http: cannot connect");
+  abort();
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   static bool started;
   static char answer[ANSWER_MAX];
@@ -108,11 +131,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     start();
     started = true;
   }
-  int connection = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  if (connection < 0 ||
-      connect(connection, (const struct sockaddr *)&address, sizeof address) != 0) {
-    abort();
-  }
+  int connection = connection_open();
   setsockopt(connection, IPPROTO_TCP, TCP_NODELAY, &(int){1}, sizeof(int));
   send_pieces(connection, data, size);
   shutdown(connection, SHUT_WR);

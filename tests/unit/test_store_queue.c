@@ -71,7 +71,7 @@ static void patch(int64_t id, const char *text, enum status expected) {
 
 START_TEST(the_highest_priority_goes_first) {
   int64_t low = submit_as("ann", -5, "a", false), middle = submit_as("ann", 0, "b", false);
-  int64_t high = submit_as("bob", 7, "c", false), late = submit_as("ann", 7, "d", false);
+  int64_t high = submit_as("ann", 7, "c", false), late = submit_as("ann", 7, "d", false);
   ck_assert_int_eq(claim_next().job_id, high);
   ck_assert_int_eq(claim_next().job_id, late);
   ck_assert_int_eq(claim_next().job_id, middle);
