@@ -11,6 +11,7 @@ ALTER TABLE job ADD COLUMN extends INTEGER;        -- of a study: the shorter on
 CREATE UNIQUE INDEX job_member ON job (study_id, member) WHERE study_id IS NOT NULL;
 CREATE UNIQUE INDEX job_chain ON job (study_id, chain, chain_position) WHERE chain IS NOT NULL;
 
+-- A study occupies no worker and waits for none: its members do.
 DROP TRIGGER job_enters_queue_insert;
 DROP TRIGGER job_enters_queue;
 DROP TRIGGER job_leaves_queue;
@@ -19,7 +20,8 @@ DROP TRIGGER job_frees_worker;
 DROP INDEX job_ready;
 ALTER TABLE job DROP COLUMN ready;
 ALTER TABLE job ADD COLUMN ready INTEGER GENERATED ALWAYS AS         -- 1: a worker may start it now
-  ((state = 'queued' AND waits_for IS NULL) OR (state = 'retry_wait' AND retry_due = 1)) VIRTUAL;
+  (kind <> 'study' AND
+   ((state = 'queued' AND waits_for IS NULL) OR (state = 'retry_wait' AND retry_due = 1))) VIRTUAL;
 
 -- Of a submitter's jobs of one priority those of no study go first, then the oldest: one job need
 -- not wait for ten thousand.
@@ -29,9 +31,9 @@ DELETE FROM submitter_queue;
 DELETE FROM submitter;
 INSERT INTO submitter (name, ready, running, charge)
   SELECT submitter, sum(ready),
-    sum(state IN ('starting', 'running', 'cancelling')),
+    sum(kind <> 'study' AND state IN ('starting', 'running', 'cancelling')),
     min(created_ms) / 60000 / 10.0 - 3.3219
-  FROM job WHERE ready OR state IN ('starting', 'running', 'cancelling')
+  FROM job WHERE ready OR (kind <> 'study' AND state IN ('starting', 'running', 'cancelling'))
   GROUP BY submitter;
 INSERT INTO submitter_queue (submitter, priority, ready, running, charge, job_id)
   SELECT submitter.name, job.priority, count(*), submitter.running, submitter.charge, min(job.id)
@@ -81,13 +83,13 @@ END;
 
 CREATE TRIGGER job_takes_worker AFTER UPDATE OF state ON job
 WHEN NEW.state IN ('starting', 'running', 'cancelling')
-  AND OLD.state NOT IN ('starting', 'running', 'cancelling')
+  AND NEW.kind <> 'study' AND OLD.state NOT IN ('starting', 'running', 'cancelling')
 BEGIN
   UPDATE submitter SET running = running + 1 WHERE name = NEW.submitter;
 END;
 CREATE TRIGGER job_frees_worker AFTER UPDATE OF state ON job
 WHEN OLD.state IN ('starting', 'running', 'cancelling')
-  AND NEW.state NOT IN ('starting', 'running', 'cancelling')
+  AND NEW.kind <> 'study' AND NEW.state NOT IN ('starting', 'running', 'cancelling')
 BEGIN
   UPDATE submitter SET running = running - 1 WHERE name = OLD.submitter;
 END;

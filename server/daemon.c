@@ -26,6 +26,7 @@
 #include "server/http/waiters.h"
 #include "server/maintenance.h"
 #include "server/store/store.h"
+#include "server/study/conductor.h"
 #include "solver/job/spec.h"
 
 enum { SIGNAL_POLL_MS = 100 };
@@ -41,7 +42,9 @@ struct parts {
 };
 
 static void job_changed(void *context, int64_t job_id) {
-  server_job_changed(context, job_id);
+  struct service *service = context;
+  server_job_changed(service, job_id);
+  conductor_wake(service->conductor);
 }
 
 static void job_progressed(void *context, int64_t job_id, int64_t attempt,
@@ -130,6 +133,15 @@ static enum status parts_open(const struct options *options, struct parts *parts
     status = janitor_create(&settings, &parts->janitor, error);
   }
   if (status == STATUS_OK) {
+    struct conductor_settings settings = {.store = service->store,
+                                          .disk = service->disk,
+                                          .reader = service->reader,
+                                          .changed = job_changed,
+                                          .progressed = job_progressed,
+                                          .context = service};
+    status = conductor_create(&settings, &service->conductor, error);
+  }
+  if (status == STATUS_OK) {
     struct pool_settings settings = {.store = service->store,
                                      .disk = service->disk,
                                      .data = options->data,
@@ -147,6 +159,9 @@ static enum status parts_open(const struct options *options, struct parts *parts
     status = pool_create(&settings, &service->pool, error);
   }
   if (status == STATUS_OK) {
+    status = conductor_start(service->conductor, service->pool, error);
+  }
+  if (status == STATUS_OK) {
     status = snapshots_create(service->store, options->data, copy_made, service,
                               &service->snapshots, error);
   }
@@ -159,7 +174,9 @@ static enum status parts_open(const struct options *options, struct parts *parts
 static void parts_close(struct parts *parts) {
   server_destroy(parts->server); /* its handlers ask the pool */
   snapshots_destroy(parts->service.snapshots);
+  conductor_stop(parts->service.conductor); /* it asks the pool, */
   pool_destroy(parts->service.pool);
+  conductor_destroy(parts->service.conductor); /* which wakes it */
   feed_destroy(parts->service.feed);
   http_meter_destroy(parts->service.meter);
   answers_destroy(parts->service.answers);

@@ -1,13 +1,19 @@
 #include <stdlib.h>
 
+#include <string.h>
+
 #include "server/exec/janitor.h"
 #include "server/http/cache.h"
 #include "server/http/handlers.h"
 #include "server/http/job_view.h"
 #include "server/http/waiters.h"
 #include "server/store/retention.h"
+#include "server/store/study.h"
+#include "server/study/conductor.h"
 #include "solver/job/json.h"
 #include "solver/job/spec.h"
+
+enum { DELETE_MAX = 100 };
 
 void job_show(struct request *request, struct reply *reply) {
   int64_t id;
@@ -30,6 +36,29 @@ void job_document(struct request *request, struct reply *reply) {
   cache_reply_text(request, reply, "application/json", text);
 }
 
+/* Removes the files of a job that is deleted, unless others were answered with its result. */
+static void files_remove(const struct service *service, int64_t id, int64_t attempts) {
+  bool kept = true;
+  if (store_files_kept(service->store, id, attempts, &kept, NULL) == STATUS_OK && !kept) {
+    janitor_remove_files(service->data, id, attempts);
+  }
+}
+
+/* Deletes the members of a study, a few at a time so that nobody waits for all. What is cut off by
+ * a crash goes on with the next request. */
+static enum status members_delete(const struct service *service, int64_t id, struct error *error) {
+  struct job_files files[DELETE_MAX];
+  size_t count;
+  enum status status;
+  do {
+    status = store_study_delete(service->store, id, files, DELETE_MAX, &count, error);
+    for (size_t i = 0; i < count && status == STATUS_OK; i++) {
+      files_remove(service, files[i].job_id, files[i].attempts);
+    }
+  } while (status == STATUS_OK && count > 0);
+  return status == STATUS_OK ? store_study_view_drop(service->store, id, error) : status;
+}
+
 void job_delete(struct request *request, struct reply *reply) {
   struct service *service = request->service;
   struct job_record record;
@@ -38,20 +67,24 @@ void job_delete(struct request *request, struct reply *reply) {
   if (!request_id(request, reply, &id)) {
     return;
   }
-  if (store_job(service->store, id, &record, &error) != STATUS_OK) {
+  enum status status = store_job(service->store, id, &record, &error);
+  if (status != STATUS_OK) {
     reply_error(reply, &error);
     return;
   }
   int64_t attempts = record.attempt;
-  bool kept = true;
+  if (strcmp(record.kind, "study") == 0) {
+    status = members_delete(service, id, &error);
+  }
   job_record_clear(&record);
-  if (store_delete(service->store, id, &error) != STATUS_OK) {
+  if (status == STATUS_OK) {
+    status = store_delete(service->store, id, &error);
+  }
+  if (status != STATUS_OK) {
     reply_error(reply, &error);
     return;
   }
-  if (store_files_kept(service->store, id, attempts, &kept, NULL) == STATUS_OK && !kept) {
-    janitor_remove_files(service->data, id, attempts);
-  }
+  files_remove(service, id, attempts);
   reply->status = 204;
 }
 
@@ -72,6 +105,7 @@ void job_cancel(struct request *request, struct reply *reply) {
   } else {
     waiters_job_ended(service->waiters, id);
   }
+  conductor_wake(service->conductor);
   job_view_reply_waiting(request, reply, state == JOB_STATE_CANCELLED ? 200 : 202, id, false);
 }
 
@@ -86,6 +120,7 @@ static void job_hold_set(struct request *request, struct reply *reply, bool hold
     return;
   }
   pool_wake(request->service->pool);
+  conductor_wake(request->service->conductor);
   job_view_reply(request, reply, 200, id, false);
 }
 

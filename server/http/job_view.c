@@ -8,6 +8,7 @@
 #include "server/http/answers.h"
 #include "server/http/event_text.h"
 #include "server/plot/plot.h"
+#include "server/study/conductor.h"
 #include "solver/job/json.h"
 
 enum { KEPT_SIZE_MAX = 16384 };
@@ -26,7 +27,8 @@ static void progress_set(const struct service *service, const struct job_record 
                          json_t *view) {
   struct progress progress = progress_none();
   bool terminal = job_state_terminal(record->state);
-  bool reported = !terminal && pool_progress(service->pool, record->id, &progress);
+  bool reported = !terminal && (pool_progress(service->pool, record->id, &progress) ||
+                                conductor_progress(service->conductor, record->id, &progress));
   json_t *fraction = json_real(reported ? progress.fraction : 0);
   if (terminal) {
     json_decref(fraction);

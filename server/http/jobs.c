@@ -6,6 +6,7 @@
 #include "server/http/job_view.h"
 #include "server/http/jobs.h"
 #include "server/http/submission.h"
+#include "server/study/conductor.h"
 
 enum { KEY_MAX = 200, LIST_LIMIT = 50, LIST_LIMIT_MAX = 500 };
 
@@ -78,6 +79,7 @@ void jobs_submit(struct request *request, struct reply *reply) {
               LOG_TEXT("caller", request->caller.name), LOG_TEXT("request", request->id));
   }
   pool_wake(service->pool);
+  conductor_wake(service->conductor);
   job_view_reply_waiting(request, reply, answered ? 200 : 202, id, true);
 }
 

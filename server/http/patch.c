@@ -2,6 +2,7 @@
 
 #include "server/http/handlers.h"
 #include "server/http/job_view.h"
+#include "server/study/conductor.h"
 #include "solver/job/json.h"
 #include "solver/job/spec.h"
 
@@ -95,5 +96,6 @@ void job_patch(struct request *request, struct reply *reply) {
     reply_error(reply, &error);
     return;
   }
+  conductor_wake(request->service->conductor);
   job_view_reply(request, reply, 200, id, false);
 }

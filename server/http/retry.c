@@ -3,6 +3,7 @@
 
 #include "server/http/handlers.h"
 #include "server/http/job_view.h"
+#include "server/study/conductor.h"
 #include "server/http/submission.h"
 #include "solver/job/json.h"
 
@@ -156,5 +157,6 @@ void job_retry(struct request *request, struct reply *reply) {
     return;
   }
   pool_wake(request->service->pool);
+  conductor_wake(request->service->conductor);
   job_view_reply_waiting(request, reply, 202, new_id, true);
 }

@@ -20,6 +20,7 @@ struct answer;
 struct answers;
 struct access;
 struct feed;
+struct conductor;
 struct connections;
 struct http_meter;
 struct isolation;
@@ -33,6 +34,7 @@ enum { HTTP_BODY_MAX = 1 << 20, HTTP_WAIT_MAX_S = 60, CLIENT_SIZE = 46 };
 struct service {
   struct store *store;
   struct pool *pool;
+  struct conductor *conductor; /* runs studies */
   struct disk *disk;
   struct waiters *waiters;
   struct snapshots *snapshots;       /* copies of the database */

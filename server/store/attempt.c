@@ -216,7 +216,7 @@ enum status store_recover(struct store *store, int64_t *count, struct error *err
   if (status == STATUS_OK) {
     status = sql_run(db, error,
                      "UPDATE job SET state = 'cancelled', message = 'Cancelled on request.', "
-                     "finished_ms = ? WHERE state = 'cancelling'",
+                     "finished_ms = ? WHERE state = 'cancelling' AND kind <> 'study'",
                      "i", now);
     *count += sqlite3_changes(db);
   }
@@ -224,7 +224,8 @@ enum status store_recover(struct store *store, int64_t *count, struct error *err
     status = sql_run(db, error,
                      "UPDATE job SET state = 'failed', reason_code = 'too_many_attempts', "
                      "message = 'Every attempt was lost.', finished_ms = ? "
-                     "WHERE state IN ('starting', 'running') AND (SELECT count(*) FROM attempt "
+                     "WHERE state IN ('starting', 'running') AND kind <> 'study' AND (SELECT "
+                     "count(*) FROM attempt "
                      "WHERE job_id = job.id AND outcome = 'lost') >= ?",
                      "ii", now, (int64_t)STORE_ATTEMPTS_MAX);
     *count += sqlite3_changes(db);

@@ -29,8 +29,9 @@ enum status flatten_each(const char *document, const struct units *units, parame
                          void *context, struct error *error);
 
 /* Inserts the rows of design_parameter of a job. They are there from its first attempt or its end
- * on, whichever is first: that keeps the work out of the submission, whose client waits. To be
- * called in a transaction. */
+ * on, whichever is first: that keeps the work out of the submission, whose client waits. Members
+ * that are cancelled with their study before they start have none. To be called in a
+ * transaction. */
 enum status flatten_store(sqlite3 *db, int64_t job_id, const struct units *units,
                           struct error *error);
 

@@ -1,16 +1,29 @@
 #include "server/store/connection.h"
 #include "server/store/sql.h"
+#include "server/store/study_row.h"
 
-static enum status patch_allowed(int64_t id, enum job_state state, const json_t *patch,
+static enum status patch_allowed(sqlite3 *db, int64_t id, enum job_state state, const json_t *patch,
                                  struct error *error) {
   bool waits =
       state == JOB_STATE_QUEUED || state == JOB_STATE_HELD || state == JOB_STATE_RETRY_WAIT;
+  enum job_state study_state;
+  int64_t study_id = 0;
+  bool study = false;
+  enum status status = study_of(db, id, &study, &study_id, &study_state, error);
+  if (status != STATUS_OK) {
+    return status;
+  }
   if (json_object_size(patch) > 0 && job_state_terminal(state)) {
     return error_set(error, STATUS_CONFLICT, NULL,
                      "Job %lld is %s: a finished job is not changed any more.", (long long)id,
                      job_state_word(state));
   }
-  if (json_object_get(patch, "priority") && !waits) {
+  if (json_object_get(patch, "priority") && study_id != 0 && !job_state_terminal(study_state)) {
+    return error_set(error, STATUS_CONFLICT, "/priority",
+                     "Job %lld is a member of study %lld and has its priority: change that one.",
+                     (long long)id, (long long)study_id);
+  }
+  if (json_object_get(patch, "priority") && !waits && !(study && state == JOB_STATE_RUNNING)) {
     return error_set(error, STATUS_CONFLICT, "/priority",
                      "Job %lld is %s: the priority can be changed only while a job waits.",
                      (long long)id, job_state_word(state));
@@ -91,7 +104,7 @@ enum status store_patch(struct store *store, int64_t id, const json_t *patch, st
   }
   status = store_state_of(store->writer, id, &state, error);
   if (status == STATUS_OK) {
-    status = patch_allowed(id, state, patch, error);
+    status = patch_allowed(store->writer, id, state, patch, error);
   }
   if (status == STATUS_OK) {
     status = patch_apply(store->writer, id, patch, error);

@@ -26,7 +26,8 @@ enum status queue_charge(sqlite3 *db, int64_t job_id, int64_t attempt, int64_t n
       sql_prepare(db, &statement, error,
                   "SELECT submitter.name, submitter.charge, attempt.created_ms FROM job "
                   "JOIN submitter ON submitter.name = job.submitter "
-                  "JOIN attempt ON attempt.job_id = job.id AND attempt.number = ? WHERE job.id = ?",
+                  "JOIN attempt ON attempt.job_id = job.id AND attempt.number = ? WHERE job.id = ? "
+                  "AND job.kind <> 'study'",
                   "ii", attempt, job_id);
   if (status == STATUS_OK) {
     status = sql_step(statement, &row, error);

@@ -48,17 +48,20 @@ void store_set_sharing(struct store *store, store_share_files *share, void *cont
 /* ---- submitting -------------------------------------------------------------------------- */
 
 struct submission {
-  const char *document;        /* the job as text */
-  const json_t *root;          /* the same, parsed: an object */
-  const char *spec_hash;       /* 64 hex digits */
-  double timeout_s;            /* 0: none */
-  const char *idempotency_key; /* or NULL */
-  int64_t retry_of;            /* or 0 */
-  const char *retry_reason;    /* or NULL */
-  const char *submitter;       /* whose share of the workers it uses; NULL: the label "user" */
-  int priority;                /* -100 .. 100 */
-  uint64_t memory_bytes;       /* limit of a worker process; 0: none of its own */
-  bool reuse;                  /* the result of an equal job will do */
+  const char *document;          /* the job as text */
+  const json_t *root;            /* the same, parsed: an object */
+  const char *spec_hash;         /* 64 hex digits */
+  double timeout_s;              /* 0: none */
+  const char *idempotency_key;   /* or NULL */
+  int64_t retry_of;              /* or 0 */
+  const char *retry_reason;      /* or NULL */
+  const char *submitter;         /* whose share of the workers it uses; NULL: the label "user" */
+  int priority;                  /* -100 .. 100 */
+  uint64_t memory_bytes;         /* limit of a worker process; 0: none of its own */
+  bool reuse;                    /* the result of an equal job will do */
+  int64_t extends;               /* of a study: the shorter one that it continues, or 0 */
+  int64_t study_id, member;      /* of a member of a study: see server/store/study.h; else 0 */
+  int64_t chain, chain_position; /* of a member that is solved after others; chain -1: of none */
 };
 
 /* Makes the job durable in state queued and stores its id; with `reuse` and an equal job that
@@ -69,22 +72,26 @@ enum status store_submit(struct store *store, const struct submission *submissio
                          bool *replayed, struct error *error);
 
 /* Removes a terminal job with its attempts and results. STATUS_NOT_FOUND, or STATUS_CONFLICT
- * while the job is not terminal. Its files are the caller's to remove. */
+ * while the job, or the study that it is a member of, is not terminal, or while a study still has
+ * members (store_study_delete). Its files are the caller's to remove. */
 enum status store_delete(struct store *store, int64_t id, struct error *error);
 
-/* Asks for the end of a job: one that waits becomes cancelled, one that runs cancelling.
- * *state: the state reached. STATUS_NOT_FOUND, or STATUS_CONFLICT for a terminal job. */
+/* Asks for the end of a job: one that waits becomes cancelled, one that runs, and a study with
+ * members that have not ended, cancelling. *state: the state reached. STATUS_NOT_FOUND, or
+ * STATUS_CONFLICT for a terminal job. */
 enum status store_cancel(struct store *store, int64_t id, enum job_state *state,
                          struct error *error);
 
-/* Takes a waiting job out of the queue (hold) or puts it back. STATUS_NOT_FOUND, or
- * STATUS_CONFLICT when the job is not queued (not held). */
+/* Takes a waiting job out of the queue (hold) or puts it back; a study may be held while it runs,
+ * too. STATUS_NOT_FOUND, or STATUS_CONFLICT when the job is not queued (not held) or is a member
+ * of a study that has not ended, which is held as a whole. */
 enum status store_hold(struct store *store, int64_t id, bool hold, struct error *error);
 
 /* Changes what people may change of a job: the members "name" (text or null), "labels" (object of
  * texts or nulls, or null) and "priority" (number or null) of a JSON merge patch (RFC 7396), of
  * which the values have been checked. STATUS_NOT_FOUND; STATUS_CONFLICT for a terminal job, and for
- * the priority of one that no longer waits; STATUS_INVALID at /labels for more than
+ * the priority of one that no longer waits, unless it is a study, and of a member of a study that
+ * has not ended; STATUS_INVALID at /labels for more than
  * STORE_LABELS_OWN_MAX of them. */
 enum status store_patch(struct store *store, int64_t id, const json_t *patch, struct error *error);
 
@@ -147,8 +154,8 @@ enum status store_attempt_finish(struct store *store, const struct attempt_outco
                                  enum job_state *state, struct error *error);
 
 /* After a start: attempts that an earlier daemon left open are marked lost; their jobs are queued
- * again, those being cancelled become cancelled, those out of attempts failed. *count: such
- * jobs. */
+ * again, those being cancelled become cancelled, those out of attempts failed. A study runs again
+ * however often its attempts were lost, and goes on being cancelled. *count: such jobs. */
 enum status store_recover(struct store *store, int64_t *count, struct error *error);
 
 /* ---- reading ----------------------------------------------------------------------------- */

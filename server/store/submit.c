@@ -4,6 +4,7 @@
 #include "server/store/connection.h"
 #include "server/store/flatten.h"
 #include "server/store/sql.h"
+#include "server/store/study_row.h"
 
 static const char *submission_text(const struct submission *submission, const char *key) {
   const char *text = json_string_value(json_object_get(submission->root, key));
@@ -69,24 +70,31 @@ static enum status submission_labels(sqlite3 *db, int64_t id, const json_t *labe
 static enum status submission_insert(struct store *store, const struct submission *submission,
                                      int64_t *id, struct error *error) {
   sqlite3 *db = store->writer;
+  int64_t member = submission->study_id != 0, chain = member && submission->chain >= 0;
   /* No job is younger than the one before, also when the clock is set back. */
   enum status status = sql_run(
       db, error,
       "INSERT INTO job (kind, name, document, spec_hash, timeout_s, retry_of, idempotency_key, "
-      "created_ms, submitter, priority, memory_bytes, reuse, retry_reason) "
-      "SELECT ?, ?, ?, ?, ?, nullif(?, 0), ?, "
-      "max(?, coalesce((SELECT created_ms FROM job ORDER BY id DESC LIMIT 1), 0)), ?, ?, ?, ?, ?",
-      "ttttdititiiit", submission_text(submission, "kind"), submission_text(submission, "name"),
-      submission->document, submission->spec_hash, submission->timeout_s, submission->retry_of,
-      submission->idempotency_key, clock_unix_ms(), submission_submitter(submission),
-      (int64_t)submission->priority, (int64_t)submission->memory_bytes, (int64_t)submission->reuse,
-      submission->retry_reason ? submission->retry_reason : "");
+      "created_ms, submitter, priority, memory_bytes, reuse, retry_reason, extends, study_id, "
+      "member, chain, chain_position) SELECT ?, ?, ?, ?, ?, nullif(?, 0), ?, "
+      "max(?, coalesce((SELECT created_ms FROM job ORDER BY id DESC LIMIT 1), 0)), ?, ?, ?, ?, ?, "
+      "nullif(?, 0), nullif(?, 0), iif(?, ?, NULL), iif(?, ?, NULL), iif(?, ?, NULL)",
+      "ttttdititiiitiiiiiiii", submission_text(submission, "kind"),
+      submission_text(submission, "name"), submission->document, submission->spec_hash,
+      submission->timeout_s, submission->retry_of, submission->idempotency_key, clock_unix_ms(),
+      submission_submitter(submission), (int64_t)submission->priority,
+      (int64_t)submission->memory_bytes, (int64_t)submission->reuse,
+      submission->retry_reason ? submission->retry_reason : "", submission->extends,
+      submission->study_id, member, submission->member, chain, submission->chain, chain,
+      submission->chain_position);
   if (status != STATUS_OK) {
     return status;
   }
   *id = sqlite3_last_insert_rowid(db);
   status = submission_labels(db, *id, json_object_get(submission->root, "labels"), error);
-  if (status == STATUS_OK && submission->reuse) {
+  /* Of a study the members are answered. */
+  if (status == STATUS_OK && submission->reuse &&
+      strcmp(submission_text(submission, "kind"), "study") != 0) {
     enum reuse reuse;
     status = reuse_try(store, *id, &reuse, error);
   }
@@ -105,25 +113,51 @@ enum status submission_write(struct store *store, const struct submission *submi
   return status;
 }
 
-enum status store_delete(struct store *store, int64_t id, struct error *error) {
-  enum job_state state;
-  enum status status = store_write_begin(store, error);
-  if (status != STATUS_OK) {
-    return status;
-  }
-  status = store_state_of(store->writer, id, &state, error);
+enum status job_rows_delete(sqlite3 *db, int64_t id, struct error *error) {
+  enum status status = sql_run(db, error, "DELETE FROM result WHERE job_id = ?", "i", id);
+  return status == STATUS_OK ? sql_run(db, error, "DELETE FROM job WHERE id = ?", "i", id) : status;
+}
+
+/* Whether the job may go: it has ended, and so has its study. */
+static enum status delete_allowed(sqlite3 *db, int64_t id, struct error *error) {
+  enum job_state state = JOB_STATE_QUEUED, study_state;
+  int64_t study_id = 0;
+  bool study = false;
+  enum status status = store_state_of(db, id, &state, error);
   if (status == STATUS_OK && !job_state_terminal(state)) {
     status = error_set(error, STATUS_CONFLICT, NULL,
                        "Job %lld is %s; only a finished job can be deleted. Cancel it first.",
                        (long long)id, job_state_word(state));
   }
   if (status == STATUS_OK) {
-    status = sql_run(store->writer, error, "DELETE FROM result WHERE job_id = ?", "i", id);
+    status = study_of(db, id, &study, &study_id, &study_state, error);
   }
+  if (status == STATUS_OK && study_id != 0 && !job_state_terminal(study_state)) {
+    status = study_live(study_id, study_state, error);
+  }
+  return status;
+}
+
+enum status store_delete(struct store *store, int64_t id, struct error *error) {
+  enum status status = store_write_begin(store, error);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  status = delete_allowed(store->writer, id, error);
   if (status == STATUS_OK) {
-    status = sql_run(store->writer, error, "DELETE FROM job WHERE id = ?", "i", id);
+    status = job_rows_delete(store->writer, id, error);
   }
   return store_write_end(store, status, error);
+}
+
+/* Whether a job that waits has to be ended in steps: a study with members. */
+static enum status ends_in_steps(sqlite3 *db, int64_t id, bool *steps, struct error *error) {
+  enum job_state study_state;
+  int64_t study_id;
+  bool study = false;
+  *steps = false;
+  enum status status = study_of(db, id, &study, &study_id, &study_state, error);
+  return status == STATUS_OK && study ? study_has_live(db, id, steps, error) : status;
 }
 
 enum status store_cancel(struct store *store, int64_t id, enum job_state *state,
@@ -132,7 +166,11 @@ enum status store_cancel(struct store *store, int64_t id, enum job_state *state,
   if (status != STATUS_OK) {
     return status;
   }
+  bool steps = false;
   status = store_state_of(store->writer, id, state, error);
+  if (status == STATUS_OK) {
+    status = ends_in_steps(store->writer, id, &steps, error);
+  }
   if (status != STATUS_OK) {
     return store_write_end(store, status, error);
   }
@@ -140,7 +178,8 @@ enum status store_cancel(struct store *store, int64_t id, enum job_state *state,
     status =
         error_set(error, STATUS_CONFLICT, NULL, "Job %lld is already %s and cannot be cancelled.",
                   (long long)id, job_state_word(*state));
-  } else if (*state == JOB_STATE_STARTING || *state == JOB_STATE_RUNNING) {
+  } else if (*state == JOB_STATE_STARTING || *state == JOB_STATE_RUNNING ||
+             (steps && *state != JOB_STATE_CANCELLING)) {
     *state = JOB_STATE_CANCELLING;
     status = sql_run(store->writer, error,
                      "UPDATE job SET state = 'cancelling', reason_code = 'cancel_requested' "
@@ -159,18 +198,50 @@ enum status store_cancel(struct store *store, int64_t id, enum job_state *state,
   return store_write_end(store, status, error);
 }
 
+/* Closes the attempt of a study that runs: it is held between two of them. */
+static enum status study_pause(sqlite3 *db, int64_t id, struct error *error) {
+  return sql_run(db, error,
+                 "UPDATE attempt SET outcome = 'requeued', reason_code = 'held', "
+                 "message = 'Held on request.', finished_ms = ? WHERE job_id = ? AND outcome = ''",
+                 "ii", clock_unix_ms(), id);
+}
+
+/* Whether the job is in a state from which it can be held (released). */
+static enum status hold_allowed(sqlite3 *db, int64_t id, bool hold, bool *runs,
+                                struct error *error) {
+  enum job_state state = JOB_STATE_QUEUED, study_state;
+  int64_t study_id = 0;
+  bool study = false;
+  enum status status = store_state_of(db, id, &state, error);
+  if (status == STATUS_OK) {
+    status = study_of(db, id, &study, &study_id, &study_state, error);
+  }
+  if (status != STATUS_OK) {
+    return status;
+  }
+  *runs = study && hold && state == JOB_STATE_RUNNING;
+  if (study_id != 0 && !job_state_terminal(study_state)) {
+    return error_set(error, STATUS_CONFLICT, NULL,
+                     "Job %lld is a member of study %lld, which is %s as a whole.", (long long)id,
+                     (long long)study_id, hold ? "held" : "released");
+  }
+  return *runs || state == (hold ? JOB_STATE_QUEUED : JOB_STATE_HELD)
+             ? STATUS_OK
+             : error_set(error, STATUS_CONFLICT, NULL,
+                         "Job %lld is %s; only a job that is %s can %s.", (long long)id,
+                         job_state_word(state), hold ? "queued" : "held",
+                         hold ? "be held" : "be released");
+}
+
 enum status store_hold(struct store *store, int64_t id, bool hold, struct error *error) {
-  enum job_state state;
+  bool runs = false;
   enum status status = store_write_begin(store, error);
   if (status != STATUS_OK) {
     return status;
   }
-  status = store_state_of(store->writer, id, &state, error);
-  if (status == STATUS_OK && state != (hold ? JOB_STATE_QUEUED : JOB_STATE_HELD)) {
-    status =
-        error_set(error, STATUS_CONFLICT, NULL, "Job %lld is %s; only a job that is %s can %s.",
-                  (long long)id, job_state_word(state), hold ? "queued" : "held",
-                  hold ? "be held" : "be released");
+  status = hold_allowed(store->writer, id, hold, &runs, error);
+  if (status == STATUS_OK && runs) {
+    status = study_pause(store->writer, id, error);
   }
   if (status == STATUS_OK) {
     status = sql_run(store->writer, error, "UPDATE job SET state = ? WHERE id = ?", "ti",

@@ -401,7 +401,7 @@ enum status study_expand(const struct job_reader *job_reader, const json_t *docu
 }
 
 enum status study_read_member(const struct job_reader *reader, const json_t *document, size_t index,
-                              struct job_spec *spec, struct error *error) {
+                              json_t **member, struct job_spec *spec, struct error *error) {
   struct draft draft;
   *spec = (struct job_spec){.kind = JOB_RESPONSE};
   draft_member(&draft, document, index);
@@ -410,6 +410,9 @@ enum status study_read_member(const struct job_reader *reader, const json_t *doc
     return error->status;
   }
   enum status status = job_reader_check(reader, built, spec, error);
+  if (member && status == STATUS_OK) {
+    *member = json_incref(built);
+  }
   json_decref(built);
   return status;
 }

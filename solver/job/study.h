@@ -57,9 +57,10 @@ enum status study_expand(const struct job_reader *reader, const json_t *document
 void study_release(struct study *study);
 
 /* Reads the member `index` of a study that study_expand has accepted, as a job of its own; the
- * caller releases *spec. The failures of job_reader_check. */
+ * caller releases *spec. *built (unless NULL): its document with defaults, a new reference. The
+ * failures of job_reader_check. */
 enum status study_read_member(const struct job_reader *reader, const json_t *document, size_t index,
-                              struct job_spec *spec, struct error *error);
+                              json_t **built, struct job_spec *spec, struct error *error);
 
 /* Writes `value` (NULL or null: takes the key away) into `document` at `pointer` (RFC 6901).
  * Objects on the way are made when they are missing. STATUS_INVALID, with the pointer of `error`

@@ -45,7 +45,7 @@ static enum batch_fate solve_member(const struct batch *batch, size_t index) {
   struct job_spec spec;
   json_t *result = NULL;
   enum status ending = STATUS_OK;
-  enum status status = study_read_member(batch->reader, batch->document, index, &spec, &error);
+  enum status status = study_read_member(batch->reader, batch->document, index, NULL, &spec, &error);
   if (status == STATUS_OK) {
     status = solve(batch, &spec, &result, &ending, &error);
     job_spec_release(&spec);

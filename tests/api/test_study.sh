@@ -25,6 +25,17 @@ study() {
 END
 }
 
+# wait_count CONDITION COUNT: waits until so many jobs meet the condition, and prints their number.
+wait_count() {
+  local count=0
+  for _ in $(seq 200); do
+    count=$(sql "select count(*) from job where $1")
+    [ "$count" = "$2" ] && break
+    sleep 0.05
+  done
+  printf '%s' "$count"
+}
+
 fetch POST /api/v1/jobs:validate --data-binary "$(study)"
 check "it is valid" true "$(field .valid)"
 fetch POST /api/v1/jobs -H 'Prefer: wait=60' --data-binary "$(study)"
@@ -54,14 +65,39 @@ check "so is a base in a file" "422" "$CODE"
 heavy=$(submit "$(study '.base.mesh = null | del(.base.mesh) | .base.accuracy = "fine"
   | .base.load.pressure.steps = 200')")
 check "a heavy study runs" running "$(wait_state "$heavy" running)"
-pid=$(sql "select pid from attempt where job_id = $heavy")
-for _ in $(seq 100); do
-  member=$(pgrep -P "$pid" | head -1)
-  [ -n "$member" ] && break
+for _ in $(seq 200); do
+  pid=$(sql "select pid from attempt join job on job.id = job_id where study_id = $heavy and state = 'running'")
+  [ -n "$pid" ] && break
   sleep 0.05
 done
-check_match "a process solves a member" '^[0-9]+$' "$member"
+check_match "a worker solves a member" '^[0-9]+$' "$pid"
+member=$(sql "select id from job where study_id = $heavy and member = 1")
+fetch POST "/api/v1/jobs/$member/hold"
+check "a member is not held alone" 409 "$CODE"
+fetch DELETE "/api/v1/jobs/$member"
+check "a member of a live study is not deleted" 409 "$CODE"
+fetch POST "/api/v1/jobs/$heavy/hold"
+check "the study is held as a whole" "200 held" "$CODE $(field .state)"
+check "with those who wait" 3 "$(wait_count "study_id = $heavy and state = 'held'" 3)"
+fetch PATCH "/api/v1/jobs/$heavy" --data-binary '{"priority": 7}'
+check "its priority can be changed" 200 "$CODE"
+fetch POST "/api/v1/jobs/$heavy/release"
+check "it is released" "200" "$CODE"
+check "with its members, and its priority is theirs" 3 \
+  "$(wait_count "study_id = $heavy and state = 'queued' and priority = 7" 3)"
 fetch POST "/api/v1/jobs/$heavy/cancel" -H 'Prefer: wait=20'
 check "it can be cancelled" cancelled "$(field .state)"
-check "its members have ended with it" no "$(alive "$member")"
+check "its members have ended with it" no "$(alive "$pid")"
+check "all of them" 4 "$(sql "select count(*) from job where study_id = $heavy and state = 'cancelled'")"
+fetch DELETE "/api/v1/jobs/$heavy"
+check "it is deleted" 204 "$CODE"
+check "with its members" 0 "$(sql "select count(*) from job where study_id = $heavy or id = $heavy")"
+
+# A repetition solves nothing.
+again=$(submit "$(study '.name = "again"')")
+check "the same study once more" succeeded "$(wait_state "$again" 'succeeded|failed|timed_out' 60)"
+check "takes its members from the first one" 4 \
+  "$(sql "select count(*) from job where study_id = $again and reused_from is not null")"
+check "its view has parameters and metrics" "0.0 0.0" \
+  "$(sql "select left_deg || ' ' || right_deg from study_$again where member = 0 and bending_angle_deg > 0")"
 finish

@@ -236,7 +236,7 @@ START_TEST(hybrid_models_may_be_many) {
   ck_assert_int_eq(study.member[1199].same_as, -1);
   ck_assert_str_eq(study.member[41].name, "mass 41 g, damping 2 N s/m");
   ck_assert_ptr_null(study.member[41].document);
-  ck_assert_int_eq(study_read_member(reader, spec.document, 41, &member, NULL), STATUS_OK);
+  ck_assert_int_eq(study_read_member(reader, spec.document, 41, NULL, &member, NULL), STATUS_OK);
   ck_assert_str_eq(member.hash, study.member[41].hash);
   ck_assert_int_eq(member.kind, JOB_HLPV);
   job_spec_release(&member);

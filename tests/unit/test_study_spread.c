@@ -113,7 +113,7 @@ START_TEST(members_are_read_alone) {
   expand(STUDY("\"sampling\":\"halton\",\"size\":20,\"parameters\":[" MASS "," RATE "]"), &spec,
          &study);
   for (size_t i = 0; i < study.count; i++) {
-    ck_assert_int_eq(study_read_member(reader, spec.document, i, &member, &error), STATUS_OK);
+    ck_assert_int_eq(study_read_member(reader, spec.document, i, NULL, &member, &error), STATUS_OK);
     ck_assert_str_eq(member.hash, study.member[i].hash);
     job_spec_release(&member);
   }
