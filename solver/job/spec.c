@@ -13,6 +13,7 @@
 #include "solver/job/reader.h"
 #include "solver/job/schema.h"
 #include "solver/job/study.h"
+#include "solver/job/study_optimise.h"
 #include "solver/job/study_sample.h"
 
 struct job_reader {
@@ -248,6 +249,9 @@ static enum status read_study(const struct job_reader *job_reader, const struct 
   spec->timeout_s = reader_member(reader, document, "timeout", "s", 0.0);
   struct study study = {.count = 0};
   enum status status = study_sample(reader, document);
+  if (status == STATUS_OK && study_is_search(document)) {
+    status = study_search_begin(job_reader, document, reader->error);
+  }
   if (status == STATUS_OK) {
     status = study_expand(job_reader, document, false, &study, reader->error);
   }

@@ -1,4 +1,5 @@
 #include "solver/job/study_constraint.h"
+#include "solver/job/study_optimise.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -67,6 +68,10 @@ static enum status read_one(const struct reader *reader, const json_t *parameter
   const char *pointer;
   json_t *factor;
   enum status status = read_limits(reader, value, constraint);
+  if (status == STATUS_OK && json_object_get(value, "metric")) { /* see study_objective.h */
+    *constraint = (struct study_constraint){.low = -INFINITY, .high = INFINITY};
+    return STATUS_OK;
+  }
   json_object_foreach(json_object_get(value, "sum"), pointer, factor) {
     size_t k = find_parameter(parameters, pointer);
     if (status == STATUS_OK && k == json_array_size(parameters)) {
@@ -79,6 +84,24 @@ static enum status read_one(const struct reader *reader, const json_t *parameter
     }
   }
   return status;
+}
+
+/* What is limited: a sum, or of a search a metric. */
+static enum status check_form(const struct reader *reader, const json_t *document,
+                              const json_t *value) {
+  bool sum = json_object_get(value, "sum"), metric = json_object_get(value, "metric");
+  if (metric && !study_is_search(document)) {
+    return error_set(reader->error, STATUS_INVALID, "",
+                     "metrics are not known before the members are solved\nlimits on metrics go "
+                     "with the sampling \"optimise\"");
+  }
+  if (sum == metric || (!metric && json_object_get(value, "at_pressure"))) {
+    return error_set(
+        reader->error, STATUS_INVALID, "",
+        "what is limited is not said, or said twice\neither a sum of parameters, or a "
+        "metric with its pressure\n{\"metric\": \"bending_angle_deg\", \"at_least\": 60}");
+  }
+  return STATUS_OK;
 }
 
 /* The error belongs to the constraint. */
@@ -94,8 +117,10 @@ enum status study_constraints_read(const struct reader *reader, const json_t *do
   *constraints = (struct study_constraints){.count = json_array_size(given),
                                             .parameters = json_array_size(parameters)};
   for (size_t i = 0; i < constraints->count; i++) {
-    enum status status =
-        read_one(reader, parameters, json_array_get(given, i), &constraints->constraint[i]);
+    enum status status = check_form(reader, document, json_array_get(given, i));
+    if (status == STATUS_OK) {
+      status = read_one(reader, parameters, json_array_get(given, i), &constraints->constraint[i]);
+    }
     if (status != STATUS_OK) {
       return at_constraint(reader, i, status);
     }

@@ -8,25 +8,20 @@
 #include "solver/explore/latin.h"
 #include "solver/explore/sequence.h"
 #include "solver/job/study_constraint.h"
+#include "solver/job/study_optimise.h"
+#include "solver/job/study_range.h"
 #include "solver/job/study_size.h"
 
-/* Points that are tried for each member before constraints are called too tight. */
-enum { TRIES_PER_MEMBER = 200 };
-
-/* What a parameter may be. */
-struct range {
-  const json_t *values; /* the choices, or NULL: from .. to */
-  double from, to;
-  bool whole, logarithmic;
-  const char *unit; /* with its space, "" for numbers; into the document */
-};
+/* Points that are tried for each member before constraints are called too tight; digits of values:
+ * what is measured has fewer. */
+enum { TRIES_PER_MEMBER = 200, VALUE_DIGITS = 7 };
 
 /* The points of a study in the making. */
 struct spread {
   const struct reader *reader;
   json_t *document;
   size_t parameters, members;
-  struct range range[SEQUENCE_DIMENSIONS_MAX];
+  struct study_range range[SEQUENCE_DIMENSIONS_MAX];
   struct study_constraints constraints;
 };
 
@@ -34,85 +29,8 @@ static const char *sampling_of(const json_t *document) {
   return json_string_value(json_object_get(document, "sampling"));
 }
 
-/* ---- ranges ------------------------------------------------------------------------------- */
-
-static enum status refuse(const struct spread *s, size_t parameter, const char *key,
-                          const char *sentence) {
-  struct json_pointer at = {.text = ""};
-  json_pointer_key(&at, "parameters");
-  json_pointer_index(&at, parameter);
-  if (key) {
-    json_pointer_key(&at, key);
-  }
-  return error_set(s->reader->error, STATUS_INVALID, at.text, "%s", sentence);
-}
-
-/* The number of "1.5 mm" and, in *unit, what follows it. */
-static bool split(const json_t *value, double *number, const char **unit) {
-  char *end;
-  *unit = "";
-  if (json_is_number(value)) {
-    *number = json_number_value(value);
-    return true;
-  }
-  const char *text = json_string_value(value);
-  *number = text ? strtod(text, &end) : NAN;
-  *unit = text ? end : "";
-  return text && end != text && isfinite(*number);
-}
-
-static enum status read_range(struct spread *s, size_t index, const json_t *parameter) {
-  struct range *range = &s->range[index];
-  const json_t *from = json_object_get(parameter, "from"), *to = json_object_get(parameter, "to");
-  const char *scale = json_string_value(json_object_get(parameter, "scale")), *other;
-  *range = (struct range){.values = json_object_get(parameter, "values")};
-  if ((range->values != NULL) == (from != NULL) || (from != NULL) != (to != NULL) ||
-      (scale && !from)) {
-    return refuse(
-        s, index, NULL,
-        "this is neither a choice nor a range\neither values to choose from, or from and "
-        "to\n{\"pointer\": \"/actuator/chamber_gap\", \"from\": \"1 mm\", \"to\": \"3 mm\"}");
-  }
-  if (range->values) {
-    return STATUS_OK;
-  }
-  range->whole = json_is_integer(from) && json_is_integer(to);
-  range->logarithmic = scale && strcmp(scale, "log") == 0;
-  if (!split(from, &range->from, &range->unit)) {
-    return refuse(s, index, "from",
-                  "this is no number with a unit\na number with its unit\n\"1 mm\"");
-  }
-  if (!split(to, &range->to, &other) || json_is_string(from) != json_is_string(to) ||
-      strcmp(range->unit, other) != 0) {
-    return refuse(s, index, "to",
-                  "this is written in another way than \"from\"\nboth with the same unit, as \"1 "
-                  "mm\" and \"3 mm\"");
-  }
-  if (!(range->from < range->to)) {
-    return refuse(s, index, "to", "the range is empty\nthis has to be more than \"from\"");
-  }
-  if (range->logarithmic && range->from <= 0.0) {
-    return refuse(s, index, "from",
-                  "the range begins at 0 or below\na logarithmic range begins above 0");
-  }
-  return STATUS_OK;
-}
-
-/* The value at u of [0, 1), a new reference. Seven digits: what is measured has fewer. */
-static json_t *value_at(const struct range *range, double u) {
-  char text[96];
-  if (range->values) {
-    size_t count = json_array_size(range->values), which = (size_t)(u * (double)count);
-    return json_incref(json_array_get(range->values, which < count ? which : count - 1));
-  }
-  double width = range->to - range->from + (range->whole ? 1.0 : 0.0);
-  double value =
-      range->logarithmic ? range->from * pow(range->to / range->from, u) : range->from + u * width;
-  if (range->whole) {
-    return json_integer((json_int_t)fmin(floor(value), range->to));
-  }
-  snprintf(text, sizeof text, "%.7g%s", value, range->unit);
-  return range->unit[0] ? json_string(text) : json_real(strtod(text, NULL));
+static enum status refuse(const struct spread *s, size_t parameter, const char *sentence) {
+  return study_range_refuse(s->reader, parameter, NULL, sentence);
 }
 
 /* ---- points ------------------------------------------------------------------------------- */
@@ -120,7 +38,7 @@ static json_t *value_at(const struct range *range, double u) {
 /* Adds one member to the lists of values. */
 static enum status add_point(struct spread *s, const double *u, json_t *const *lists) {
   for (size_t k = 0; k < s->parameters; k++) {
-    if (json_array_append_new(lists[k], value_at(&s->range[k], u[k])) != 0) {
+    if (json_array_append_new(lists[k], study_range_value(&s->range[k], u[k], VALUE_DIGITS)) != 0) {
       return error_set(s->reader->error, STATUS_NO_MEMORY, NULL, "no memory for the members");
     }
   }
@@ -226,7 +144,33 @@ static enum status check_values(struct spread *s) {
         sampling);
     if (!json_object_get(parameter, "values") || json_object_get(parameter, "from") ||
         json_object_get(parameter, "to") || json_object_get(parameter, "scale")) {
-      return refuse(s, k, NULL, sentence);
+      return refuse(s, k, sentence);
+    }
+  }
+  return STATUS_OK;
+}
+
+/* A search has ranges alone. */
+static enum status check_search(const struct spread *s) {
+  for (size_t k = 0; k < s->parameters; k++) {
+    if (s->range[k].values) {
+      return refuse(
+          s, k,
+          "there are values to choose from\nthe sampling \"optimise\" takes a range\n"
+          "{\"pointer\": \"/actuator/chamber_gap\", \"from\": \"1 mm\", \"to\": \"3 mm\"}");
+    }
+  }
+  return STATUS_OK;
+}
+
+/* What only a search has a use for. */
+static enum status check_starts(const struct reader *reader, const json_t *document) {
+  size_t k;
+  json_t *parameter;
+  json_array_foreach(json_object_get(document, "parameters"), k, parameter) {
+    if (json_object_get(parameter, "start") && !study_is_search(document)) {
+      return study_range_refuse(reader, k, "start",
+                                "only the sampling \"optimise\" has starts\nleave it out");
     }
   }
   return STATUS_OK;
@@ -237,12 +181,18 @@ enum status study_sample(const struct reader *reader, json_t *document) {
   const json_t *parameters = json_object_get(document, "parameters");
   struct spread s = {
       .reader = reader, .document = document, .parameters = json_array_size(parameters)};
+  if (status == STATUS_OK) {
+    status = check_starts(reader, document);
+  }
   if (status != STATUS_OK || !study_is_spread(document)) {
     return status == STATUS_OK ? check_values(&s) : status;
   }
   s.members = study_count(document);
   for (size_t k = 0; k < s.parameters && status == STATUS_OK; k++) {
-    status = read_range(&s, k, json_array_get(parameters, k));
+    status = study_range_read(s.reader, k, json_array_get(parameters, k), &s.range[k]);
+  }
+  if (status == STATUS_OK && study_is_search(document)) {
+    return check_search(&s);
   }
   if (status == STATUS_OK) {
     status = study_constraints_read(reader, document, &s.constraints);

@@ -3,6 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "solver/job/study_optimise.h"
+
 bool study_is_list(const json_t *document) {
   return strcmp(json_string_value(json_object_get(document, "sampling")), "list") == 0;
 }
@@ -14,7 +16,7 @@ bool study_is_grid(const json_t *document) {
 bool study_is_spread(const json_t *document) {
   const char *sampling = json_string_value(json_object_get(document, "sampling"));
   return strcmp(sampling, "latin-hypercube") == 0 || strcmp(sampling, "sobol") == 0 ||
-         strcmp(sampling, "halton") == 0;
+         strcmp(sampling, "halton") == 0 || study_is_search(document);
 }
 
 size_t study_value_count(const json_t *parameter) {
@@ -37,6 +39,9 @@ static size_t members_max(const json_t *document) {
 size_t study_count(const json_t *document) {
   if (study_is_list(document)) {
     return json_array_size(json_object_get(document, "designs"));
+  }
+  if (study_is_search(document)) {
+    return study_value_count(json_array_get(json_object_get(document, "parameters"), 0));
   }
   if (study_is_spread(document)) {
     return (size_t)json_integer_value(json_object_get(document, "size"));
@@ -96,6 +101,7 @@ static enum status check_text(const json_t *document, size_t count, struct error
 static enum status check_keys(const json_t *document, struct error *error) {
   const char *sampling = json_string_value(json_object_get(document, "sampling"));
   bool list = study_is_list(document), spread = study_is_spread(document);
+  bool search = study_is_search(document), sized = spread && !search;
   bool sequence = spread && strcmp(sampling, "latin-hypercube") != 0;
   const struct {
     const char *key, *example;
@@ -106,7 +112,12 @@ static enum status check_keys(const json_t *document, struct error *error) {
        spread ? "[{\"pointer\": \"/actuator/chamber_gap\", \"from\": \"1 mm\", \"to\": \"3 mm\"}]"
               : "[{\"pointer\": \"/actuator/chamber_gap\", \"values\": [\"1 mm\"]}]",
        !list, !list},
-      {"size", "64", spread, spread},
+      {"size", "64", sized, sized},
+      {"objective", "{\"target\": {\"bending_angle_deg\": 60}}", search, search},
+      {"starts", "4", false, search},
+      {"budget", "40", false, search},
+      {"method", "\"slsqp\"", false, search},
+      {"tolerance", "0.001", false, search},
       {"seed", "1", false, spread},
       {"constraints", "[{\"sum\": {\"/actuator/top_wall\": 1}, \"at_most\": \"3 mm\"}]", false,
        sequence},

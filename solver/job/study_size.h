@@ -8,7 +8,8 @@
 bool study_is_list(const json_t *document);
 bool study_is_grid(const json_t *document);
 
-/* Whether it spreads its members over ranges: "latin-hypercube", "sobol" or "halton". */
+/* Whether it spreads its members over ranges: "latin-hypercube", "sobol", "halton" or
+ * "optimise". */
 bool study_is_spread(const json_t *document);
 
 /* The kind of its members, borrowed from the document. */

@@ -4,6 +4,7 @@
 
 #include "solver/explore/study_document.h"
 #include "solver/job/study.h"
+#include "solver/job/study_optimise.h"
 #include "solver/study/child.h"
 #include "solver/study/store.h"
 #include "solver/study/study_run.h"
@@ -38,7 +39,9 @@ struct study_run {
   int slots;
   size_t next; /* first member that has not been looked at */
   size_t settled;
-  double deadline_s; /* clock_wall_s, infinite without a limit */
+  struct study_search *search; /* of a study that searches, else NULL */
+  size_t told;                 /* members that the search knows the results of */
+  double deadline_s;           /* clock_wall_s, infinite without a limit */
   struct study_figures figures;
 };
 
@@ -57,6 +60,11 @@ void study_settle(struct study_run *run, size_t index);
 
 /* Ends the processes that still run, and waits for that. */
 void study_stop(struct study_run *run);
+
+/* Takes the members of the next round of a search into the study, when all that there are have been
+ * settled. *more: whether there are some; never in a study that does not search. The failures of
+ * study_search_next and study_expand. */
+enum status study_next_round(struct study_run *run, bool *more, struct error *error);
 
 /* Solves light members until all are settled or the study has to end.
  * STATUS_OK, STATUS_IO or STATUS_NO_MEMORY. */

@@ -244,6 +244,9 @@ static enum status prepare(struct study_run *run, const struct job_spec *spec,
   if (status == STATUS_OK) {
     status = study_expand(run->reader, spec->document, !light, &run->study, error);
   }
+  if (status == STATUS_OK && study_is_search(spec->document)) {
+    status = study_search_create(run->reader, spec->document, &run->search, error);
+  }
   if (status != STATUS_OK) {
     return status;
   }
@@ -253,6 +256,20 @@ static enum status prepare(struct study_run *run, const struct job_spec *spec,
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the study");
   }
   return member_store_open(run->options->out_dir, &run->store, error);
+}
+
+/* One round, or of a search as many as it takes. */
+static enum status work_rounds(struct study_run *run, enum status *ending, struct error *error) {
+  bool more = true;
+  enum status status = STATUS_OK;
+  while (status == STATUS_OK && *ending == STATUS_OK && more) {
+    status = run->study.light ? study_work_light(run, ending, error) : work(run, ending, error);
+    study_stop(run);
+    if (status == STATUS_OK && *ending == STATUS_OK) {
+      status = study_next_round(run, &more, error);
+    }
+  }
+  return status;
 }
 
 static double children_cpu_s(void) {
@@ -294,8 +311,7 @@ enum status study_run(const struct job_spec *spec, const struct study_options *o
   if (status != STATUS_OK) {
     goto done;
   }
-  status = run.study.light ? study_work_light(&run, ending, error) : work(&run, ending, error);
-  study_stop(&run);
+  status = work_rounds(&run, ending, error);
   if (status != STATUS_OK) {
     goto done;
   }
@@ -306,12 +322,17 @@ enum status study_run(const struct job_spec *spec, const struct study_options *o
   run.figures.cpu_s = children_cpu_s();
   struct study_results results = {.context = &run, .result = result_of};
   *document = study_document(spec, &run.study, &results, &run.figures, *ending);
+  if (*document && run.search && study_search_report(run.search, *document) != STATUS_OK) {
+    json_decref(*document);
+    *document = NULL;
+  }
   if (!*document) {
     status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the result document");
   }
 done:
   member_store_close(&run.store, &run.study);
   study_release(&run.study);
+  study_search_destroy(run.search);
   job_reader_destroy(run.reader);
   free(run.state);
   return status;
