@@ -6,7 +6,8 @@
 
 #include "server/store/sql.h"
 
-enum { SQL_SIZE = 4096, RARE = 1000 };
+/* LOOK_MAX: rows of a range that are looked through for jobs with several labels; about 2 ms. */
+enum { SQL_SIZE = 4096, RARE = 1000, LOOK_MAX = 1000 };
 
 /* Where a range begins. */
 enum start {
@@ -41,6 +42,7 @@ void places_clear(struct places *places) {
     free(places->list[i].text);
   }
   free(places->list);
+  free(places->end.text);
   *places = (struct places){0};
 }
 
@@ -60,6 +62,24 @@ static enum status places_add(struct places *places, int64_t id, int64_t number,
     return error_set(error, STATUS_NO_MEMORY, NULL, "No memory for a list.");
   }
   places->list[places->count++] = (struct place){.id = id, .number = number, .text = copy};
+  return STATUS_OK;
+}
+
+/* What comes after this place has not been looked at: of several such places the first counts. */
+static enum status places_end(struct places *places, bool descending, int64_t id, int64_t number,
+                              const char *text, struct error *error) {
+  struct place end = {.id = id, .number = number, .text = strdup(text)};
+  if (!end.text) {
+    return error_set(error, STATUS_NO_MEMORY, NULL, "No memory for a list.");
+  }
+  int order = places->ended ? place_compare(&end, &places->end) : 0;
+  if (!places->ended || (descending ? order > 0 : order < 0)) {
+    free(places->end.text);
+    places->end = end;
+    places->ended = true;
+  } else {
+    free(end.text);
+  }
   return STATUS_OK;
 }
 
@@ -91,7 +111,8 @@ static enum start range_start(const struct branches *all, enum job_state state) 
   return order < 0 ? START_NOWHERE : order > 0 ? START_FIRST : START_ID;
 }
 
-/* The text of a range's query. Parameters: 1, 2 label and value, 3 kind, 4 state, 5 key and 6 id of
+/* The text of a range's query: id and key of its rows, and whether the other labels are there, too.
+ * Parameters: 1, 2 label and value, 3 kind, 4 state, 5 key and 6 id of
  * the place, 7 how many; from 8 on the other labels. */
 static void range_sql(const struct branches *all, enum start start, bool ids, char sql[SQL_SIZE]) {
   const struct list_query *query = all->query;
@@ -101,7 +122,16 @@ static void range_sql(const struct branches *all, enum start start, bool ids, ch
   const char *sign = query->descending ? "<" : ">", *way = query->descending ? "DESC" : "ASC";
   size_t used = 0;
 #define ADD(...) used += (size_t)snprintf(sql + used, SQL_SIZE - used, __VA_ARGS__)
-  ADD("SELECT %s, %s FROM %s AS j WHERE j.state = ?4", id, ids ? "0" : key, table);
+  ADD("SELECT %s, %s, 1", id, ids ? "0" : key);
+  for (size_t i = 0, parameter = 8; i < query->label_count; i++) {
+    if (i != all->label) {
+      ADD(" AND EXISTS (SELECT 1 FROM job_label AS l WHERE l.job_id = j.job_id AND l.name = ?%zu "
+          "AND l.value = ?%zu)",
+          parameter, parameter + 1);
+      parameter += 2;
+    }
+  }
+  ADD(" FROM %s AS j WHERE j.state = ?4", table);
   if (labels) {
     ADD(" AND j.name = ?1 AND j.value = ?2");
   }
@@ -114,14 +144,6 @@ static void range_sql(const struct branches *all, enum start start, bool ids, ch
     ADD(" AND j.%s %s ?5", key, sign);
   } else if (start == START_TIE) {
     ADD(" AND j.%s = ?5 AND j.%s %s ?6", key, id, sign);
-  }
-  for (size_t i = 0, parameter = 8; i < query->label_count; i++) {
-    if (i != all->label) {
-      ADD(" AND EXISTS (SELECT 1 FROM job_label AS l WHERE l.job_id = j.job_id AND l.name = ?%zu "
-          "AND l.value = ?%zu)",
-          parameter, parameter + 1);
-      parameter += 2;
-    }
   }
   if (!ids) {
     ADD(" ORDER BY j.%s %s, j.%s %s LIMIT ?7", key, way, id, way);
@@ -148,7 +170,7 @@ static void range_bind(const struct branches *all, sqlite3_stmt *statement, cons
     sqlite3_bind_int64(statement, 5, all->after->number);
   }
   sqlite3_bind_int64(statement, 6, all->after ? all->after->id : 0);
-  sqlite3_bind_int64(statement, 7, (int64_t)all->most);
+  sqlite3_bind_int64(statement, 7, query->label_count > 1 ? LOOK_MAX : (int64_t)all->most);
   for (size_t i = 0; i < query->label_count && parameter + 1 <= count; i++) {
     if (i != all->label) {
       sqlite3_bind_text(statement, parameter++, query->labels[i].name, -1, SQLITE_STATIC);
@@ -170,13 +192,21 @@ static enum status range_read(struct branches *all, const char *kind, enum job_s
   if (status != STATUS_OK) {
     return status;
   }
-  int row = 0;
+  int row = 0, looked = 0;
+  size_t wanted = all->places->count + all->most;
   const char *word = all->query->sort == LIST_BY_STATE ? job_state_word(state) : "";
   range_bind(all, *statement, kind, state);
-  while ((status = sql_step(*statement, &row, error)) == STATUS_OK && row) {
-    status = places_add(all->places, sqlite3_column_int64(*statement, 0),
-                        names ? 0 : sqlite3_column_int64(*statement, 1),
-                        names ? sql_text(*statement, 1) : word, error);
+  while (all->places->count < wanted && (status = sql_step(*statement, &row, error)) == STATUS_OK &&
+         row) {
+    int64_t id = sqlite3_column_int64(*statement, 0);
+    int64_t number = names ? 0 : sqlite3_column_int64(*statement, 1);
+    const char *text = names ? sql_text(*statement, 1) : word;
+    if (sqlite3_column_int(*statement, 2)) {
+      status = places_add(all->places, id, number, text, error);
+    }
+    if (status == STATUS_OK && ++looked == LOOK_MAX) {
+      status = places_end(all->places, all->query->descending, id, number, text, error);
+    }
     if (status != STATUS_OK) {
       break;
     }
@@ -275,6 +305,30 @@ static enum status kinds_collect(struct branches *all, struct error *error) {
 
 /* ---- all of them ------------------------------------------------------------------------- */
 
+static int ascending(const void *a, const void *b) {
+  return place_compare(a, b);
+}
+
+static int descending(const void *a, const void *b) {
+  return place_compare(b, a);
+}
+
+/* Sorts the places, and leaves out those of which it is not known whether they are the next. */
+static void places_sort(struct places *places, bool down) {
+  if (places->count > 1) {
+    qsort(places->list, places->count, sizeof *places->list, down ? descending : ascending);
+  }
+  while (places->ended && places->count > 0) {
+    struct place *last = &places->list[places->count - 1];
+    int order = place_compare(last, &places->end);
+    if (down ? order >= 0 : order <= 0) {
+      break;
+    }
+    free(last->text);
+    places->count--;
+  }
+}
+
 enum status branches_collect(sqlite3 *db, const struct list_query *query, const struct place *after,
                              size_t most, struct places *places, struct error *error) {
   struct branches all = {.db = db, .query = query, .after = after, .most = most, .places = places};
@@ -290,5 +344,6 @@ enum status branches_collect(sqlite3 *db, const struct list_query *query, const 
   for (size_t i = 0; i < sizeof all.cached / sizeof *all.cached; i++) {
     sqlite3_finalize(all.cached[i]);
   }
+  places_sort(places, query->descending);
   return status;
 }

@@ -24,12 +24,16 @@ int place_compare(const struct place *a, const struct place *b);
 struct places {
   struct place *list;
   size_t count, room;
+  struct place end; /* with `ended`: what comes after it has not been looked at */
+  bool ended;
 };
 
 void places_clear(struct places *places);
 
 /* Collects, of every range that the query takes in, the first `most` places after `after` (NULL:
- * from the beginning). They are not in order across ranges. */
+ * from the beginning), and sorts them. Where several labels hardly ever meet, a range is looked
+ * through for a limited number of rows only; then places->end, which comes after `after`, says how
+ * far the list is known. */
 enum status branches_collect(sqlite3 *db, const struct list_query *query, const struct place *after,
                              size_t most, struct places *places, struct error *error);
 

@@ -95,23 +95,11 @@ static enum status cursor_wrong(const struct list_query *query, struct error *er
 
 /* ---- a page ------------------------------------------------------------------------------ */
 
-static int ascending(const void *a, const void *b) {
-  return place_compare(a, b);
-}
-
-static int descending(const void *a, const void *b) {
-  return place_compare(b, a);
-}
-
 /* Reads the first jobs of the places; one place more tells that there is another page. */
 static enum status page_read(sqlite3 *db, const struct list_query *query, struct places *places,
                              struct job_record *records, size_t *count, char **next,
                              struct error *error) {
   size_t limit = (size_t)query->limit;
-  if (places->count > 1) {
-    qsort(places->list, places->count, sizeof *places->list,
-          query->descending ? descending : ascending);
-  }
   while (*count < limit && *count < places->count) {
     enum status status = store_record_read(db, places->list[*count].id, &records[*count], error);
     if (status != STATUS_OK) {
@@ -119,8 +107,8 @@ static enum status page_read(sqlite3 *db, const struct list_query *query, struct
     }
     ++*count;
   }
-  if (places->count > limit) {
-    *next = cursor_write(query, &places->list[limit - 1]);
+  if (places->count > limit || places->ended) {
+    *next = cursor_write(query, places->count > limit ? &places->list[limit - 1] : &places->end);
     if (!*next) {
       return error_set(error, STATUS_NO_MEMORY, NULL, "No memory for a cursor.");
     }

@@ -197,7 +197,8 @@ struct list_query {
 };
 
 /* One page, in a time that depends neither on the number of jobs nor on the page. (With several
- * labels the jobs are looked through that have the rarest of them.) *records: malloc'd array of
+ * labels the jobs are looked through that have the rarest of them, a bounded number for each page:
+ * then a page may have fewer jobs than wanted, or none, though there is a next one.) *records: malloc'd array of
  * *count, each to be cleared, then freed. *next: the cursor of the next page, malloc'd, NULL when
  * this is the last: it stands for a place in the order, whatever becomes of the job there.
  * STATUS_INVALID for a cursor that is none of this order. */

@@ -125,6 +125,31 @@ START_TEST(pages_agree_with_a_plain_query) {
 }
 END_TEST
 
+/* Of 5000 jobs in two states half have one label, half the other, and seven have both. */
+static void fill_apart(void) {
+  ck_assert(sql_allowed(
+      "WITH RECURSIVE n (i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 5000) "
+      "INSERT INTO job (state, kind, name, document, spec_hash, created_ms, finished_ms) "
+      "SELECT iif(i % 3, 'succeeded', 'failed'), 'response', 'name ' || (i * 17 % 23), '{}', 'h', "
+      "i, i * 31 % 97 FROM n;"
+      "INSERT INTO job_label (job_id, name, value, kind, state, finished_ms, job_name) "
+      "SELECT id, iif(id % 2, 'p', 'q'), 'x', kind, state, finished_ms, name FROM job;"
+      "INSERT INTO job_label (job_id, name, value, kind, state, finished_ms, job_name) "
+      "SELECT id, iif(id % 2, 'q', 'p'), 'x', kind, state, finished_ms, name FROM job "
+      "WHERE id % 709 = 5"));
+}
+
+START_TEST(labels_that_hardly_meet_are_found_page_by_page) {
+  struct list_query query = {.limit = 3, .label_count = 2};
+  fill_apart();
+  query.labels[0].name = "p", query.labels[0].value = "x";
+  query.labels[1].name = "q", query.labels[1].value = "x";
+  compare(query);
+  query.labels[1].value = "nowhere";
+  compare(query);
+}
+END_TEST
+
 START_TEST(foreign_cursors_are_refused) {
   static const struct {
     int sort;
@@ -184,6 +209,7 @@ int main(void) {
   tcase_add_checked_fixture(tests, store_setup, store_teardown);
   tcase_set_timeout(tests, 120);
   tcase_add_test(tests, pages_agree_with_a_plain_query);
+  tcase_add_test(tests, labels_that_hardly_meet_are_found_page_by_page);
   tcase_add_test(tests, foreign_cursors_are_refused);
   tcase_add_test(tests, a_cursor_outlives_its_job);
   suite_add_tcase(suite, tests);
