@@ -20,7 +20,8 @@ bool figure_write(const char *program, const char *plot, const struct plot_input
   unsigned char *png = NULL;
   size_t size = 0;
   struct error error = {.status = STATUS_OK};
-  if (plot_render(plot, inputs, count, width, height, &png, &size, &error) != STATUS_OK) {
+  const struct plot_sheet sheet = {.width = width, .height = height};
+  if (plot_render(plot, inputs, count, &sheet, &png, &size, &error) != STATUS_OK) {
     fprintf(stderr, "%s: %s: %s\n", program, path, error.message);
     return false;
   }
