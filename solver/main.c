@@ -11,16 +11,10 @@
 #include <unistd.h>
 #include "solver/job/embed.h"
 #include "solver/job/json.h"
+#include "solver/answer.h"
+#include "solver/bundle.h"
 #include "solver/run.h"
 #include "solver/study/study_run.h"
-
-enum exit_code {
-  EXIT_SUCCEEDED = 0,
-  EXIT_INVALID_JOB = 2,
-  EXIT_STOPPED_EARLY = 3,
-  EXIT_INTERNAL = 4,
-  EXIT_CANCELLED = 5
-};
 
 static volatile sig_atomic_t cancel_requested;
 
@@ -38,6 +32,7 @@ static const char usage[] =
     "usage: pneulab-solve [--out DIR] [--events FILE] [--threads N] [--jobs N] [--deck FILE]\n"
     "                     [--path-in FILE] [--path-out FILE] [--verbose] JOB.json\n"
     "       pneulab-solve --embed JOB.json\n"
+    "       pneulab-solve --bundle FILE\n"
     "  JOB.json        job document; - reads standard input. Files that it names, as in\n"
     "                  { \"file\": \"curve.csv\" }, are looked for from its folder\n"
     "  --embed         print the job with the content of these files in their place, to be sent\n"
@@ -50,25 +45,33 @@ static const char usage[] =
     "  --path-out FILE keep the path of converged states there\n"
     "  --path-in FILE  start from such a path of a design with the same mesh topology; where that\n"
     "                  does not work the solve starts from the undeformed body by itself\n"
+    "  --bundle FILE   solve several jobs, each in a folder of its own and starting from the one\n"
+    "                  before: the file lists them as docs/JOBS.md says\n"
     "  --verbose       print iterations on standard error\n"
     "The result document goes to standard output. Exit status: 0 succeeded, 2 invalid job,\n"
     "3 stopped early (the result says why), 4 internal error, 5 cancelled.\n";
 
 struct arguments {
-  const char *job, *events;
+  const char *job, *events, *bundle;
   int threads, jobs;
   bool embed; /* print the self-contained job instead of running it */
   struct run_options run;
 };
 
 static bool parse_arguments(int argc, char **argv, struct arguments *a) {
-  static const struct option options[] = {
-      {"out", required_argument, NULL, 'o'},     {"events", required_argument, NULL, 'e'},
-      {"threads", required_argument, NULL, 't'}, {"deck", required_argument, NULL, 'd'},
-      {"path-in", required_argument, NULL, 'i'}, {"path-out", required_argument, NULL, 'p'},
-      {"jobs", required_argument, NULL, 'j'},    {"verbose", no_argument, NULL, 'v'},
-      {"embed", no_argument, NULL, 'm'},         {"version", no_argument, NULL, 'V'},
-      {"help", no_argument, NULL, 'h'},          {0}};
+  static const struct option options[] = {{"out", required_argument, NULL, 'o'},
+                                          {"events", required_argument, NULL, 'e'},
+                                          {"threads", required_argument, NULL, 't'},
+                                          {"deck", required_argument, NULL, 'd'},
+                                          {"path-in", required_argument, NULL, 'i'},
+                                          {"path-out", required_argument, NULL, 'p'},
+                                          {"jobs", required_argument, NULL, 'j'},
+                                          {"verbose", no_argument, NULL, 'v'},
+                                          {"embed", no_argument, NULL, 'm'},
+                                          {"bundle", required_argument, NULL, 'b'},
+                                          {"version", no_argument, NULL, 'V'},
+                                          {"help", no_argument, NULL, 'h'},
+                                          {0}};
   int option;
   while ((option = getopt_long(argc, argv, "h", options, NULL)) != -1) {
     switch (option) {
@@ -93,6 +96,9 @@ static bool parse_arguments(int argc, char **argv, struct arguments *a) {
     case 'p':
       a->run.path_out = optarg;
       break;
+    case 'b':
+      a->bundle = optarg;
+      break;
     case 'm':
       a->embed = true;
       break;
@@ -110,31 +116,8 @@ static bool parse_arguments(int argc, char **argv, struct arguments *a) {
     }
   }
   a->job = optind + 1 == argc ? argv[optind] : NULL;
-  return a->job && a->threads >= 1 && a->threads <= 256 && a->jobs >= 0 &&
-         a->jobs <= STUDY_JOBS_MAX;
-}
-
-/* Reads the job's text. One byte more than a job may have is read, so that an oversized one is
- * recognised, not cut. The caller frees the result. */
-static char *read_job(const char *path, size_t *size, struct error *error) {
-  FILE *file = strcmp(path, "-") == 0 ? stdin : fopen(path, "r");
-  char *text = malloc(JSON_TEXT_MAX + 1);
-  if (!file || !text) {
-    error_set(error, STATUS_IO, NULL, "cannot read %s: %s", path, strerror(errno));
-    free(text);
-    text = NULL;
-  } else {
-    *size = fread(text, 1, JSON_TEXT_MAX + 1, file);
-    if (ferror(file)) {
-      error_set(error, STATUS_IO, NULL, "reading %s failed: %s", path, strerror(errno));
-      free(text);
-      text = NULL;
-    }
-  }
-  if (file && file != stdin) {
-    fclose(file);
-  }
-  return text;
+  return (a->bundle ? optind == argc : a->job != NULL) && a->threads >= 1 && a->threads <= 256 &&
+         a->jobs >= 0 && a->jobs <= STUDY_JOBS_MAX;
 }
 
 /* Makes the directory of the artifacts unless it is there. */
@@ -154,30 +137,18 @@ static enum status open_events(const char *path, FILE **events, struct error *er
   return STATUS_OK;
 }
 
-/* A study is long, and printed without spaces; other documents people read. */
-static void print_document(json_t *document) {
-  size_t layout = json_object_get(document, "members") ? JSON_COMPACT : JSON_INDENT(1);
-  json_dumpf(document, stdout, layout | JSON_REAL_PRECISION(12));
-  putchar('\n');
-  json_decref(document);
-}
-
 /* Prints the error as a document and returns the exit code that fits it. */
 static int report(const struct error *error) {
-  bool invalid = error->status == STATUS_INVALID || error->status == STATUS_SYNTAX ||
-                 error->status == STATUS_GEOMETRY || error->status == STATUS_TOO_LARGE;
   char text[ERROR_TEXT_MAX];
   fprintf(stderr, "pneulab-solve: %s\n", error_describe(error, text, sizeof text));
-  json_t *problem = json_pack("{s:s, s:s, s:s}", "code", status_word(error->status), "message",
-                              error->message, "pointer", error->pointer);
-  json_set_error(problem, error);
-  print_document(
-      json_pack("{s:s, s:o}", "status", invalid ? "invalid" : "error", "error", problem));
+  json_t *document = answer_of_error(error);
+  answer_write(document, stdout);
+  json_decref(document);
   if (error->status == STATUS_NO_MEMORY) { /* at exit OpenBLAS would wait for ever for memory */
     fflush(NULL);
     _exit(EXIT_INTERNAL);
   }
-  return invalid ? EXIT_INVALID_JOB : EXIT_INTERNAL;
+  return answer_exit_of_error(error);
 }
 
 /* Reads the job with the files that it names, or only prints it so. Places of errors are those in
@@ -186,7 +157,7 @@ static enum status read_spec(const struct arguments *a, struct job_spec *spec,
                              struct error *error) {
   size_t size = 0, length = 0;
   char *embedded = NULL;
-  char *text = read_job(a->job, &size, error);
+  char *text = answer_read_job(a->job, &size, error);
   if (!text) {
     return STATUS_IO;
   }
@@ -238,6 +209,10 @@ int main(int argc, char **argv) {
   sigaction(SIGTERM, &action, NULL);
   sigaction(SIGINT, &action, NULL);
   openblas_set_num_threads(a.threads);
+  if (a.bundle) {
+    struct bundle_options bundle = {a.bundle, a.run.verbose, cancelled};
+    return bundle_run(&bundle);
+  }
   if (read_spec(&a, &spec, &error) != STATUS_OK) {
     return report(&error);
   }
@@ -260,13 +235,12 @@ int main(int argc, char **argv) {
     return report(&error);
   }
   if (document) {
-    print_document(document);
+    answer_write(document, stdout);
+    json_decref(document);
   }
   if (fflush(stdout) != 0 || ferror(stdout)) {
     fprintf(stderr, "pneulab-solve: writing the result failed: %s\n", strerror(errno));
     return EXIT_INTERNAL;
   }
-  return ending == STATUS_OK          ? EXIT_SUCCEEDED
-         : ending == STATUS_CANCELLED ? EXIT_CANCELLED
-                                      : EXIT_STOPPED_EARLY;
+  return answer_exit_of_ending(ending);
 }

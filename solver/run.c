@@ -65,7 +65,12 @@ static enum status take_point(void *context, const struct path_point *point) {
 
 static enum status prepare(struct run *run, struct error *error) {
   const struct job_spec *spec = run->spec;
-  enum status status = solve_prepare(spec, &run->solve, error);
+  struct run_carry *carry = run->options->carry;
+  struct ldlt *spare = carry ? carry->analysis : NULL;
+  if (carry) {
+    carry->analysis = NULL;
+  }
+  enum status status = solve_prepare_with(spec, spare, &run->solve, error);
   if (status != STATUS_OK) {
     return status;
   }
@@ -103,10 +108,31 @@ static enum status open_paths(struct run *run, struct error *error) {
   if (run->options->path_in) {
     status = path_record_read(run->options->path_in, &run->from, error);
   }
-  if (status == STATUS_OK && run->options->path_out) {
+  struct run_carry *carry = run->options->carry;
+  if (status == STATUS_OK && carry && carry->path) {
+    run->from = carry->path;
+    carry->path = NULL;
+  }
+  if (status == STATUS_OK && (run->options->path_out || carry)) {
     status = path_record_create(run->solve.model, &run->path);
   }
   return status;
+}
+
+/* Leaves to the next solve what it may start from. */
+static void hand_over(struct run *run, enum status ending) {
+  struct run_carry *carry = run->options->carry;
+  if (carry && run->solve.model && ending == STATUS_OK) {
+    run_carry_release(carry);
+    *carry = (struct run_carry){run->path, model_release_analysis(run->solve.model)};
+    run->path = NULL;
+  }
+}
+
+void run_carry_release(struct run_carry *carry) {
+  path_record_destroy(carry->path);
+  ldlt_destroy(carry->analysis);
+  *carry = (struct run_carry){0};
 }
 
 static enum status follow(struct run *run, struct error *error) {
@@ -136,7 +162,7 @@ static enum status solve(struct run *run, json_t **document, enum status *ending
   if (*ending == STATUS_OK && run->spec->error_estimate) {
     estimate(run);
   }
-  if (run->path) {
+  if (run->options->path_out) {
     status = path_record_write(run->path, run->options->path_out, error);
   }
   if (status == STATUS_OK && run->options->out_dir) {
@@ -213,6 +239,9 @@ enum status run_job(const struct job_spec *spec, const struct run_options *optio
     status = deck_write(&run.solve.mesh, spec, "C3D20R", options->deck_path, error);
   } else {
     status = solve(&run, document, ending, error);
+  }
+  if (status == STATUS_OK && !options->deck_path) {
+    hand_over(&run, *ending);
   }
   path_record_destroy(run.from);
   path_record_destroy(run.path);

@@ -6,13 +6,28 @@
 #include <stdio.h>
 #include "solver/job/spec.h"
 
+struct path_record;
+struct ldlt;
+
+/* What one solve leaves to the next of a chain, in memory; all NULL at first. */
+struct run_carry {
+  struct path_record *path; /* converged states of the last solve that reached its load */
+  struct ldlt *analysis;    /* of its tangents */
+};
+
+/* Releases what is carried, and clears it. */
+void run_carry_release(struct run_carry *carry);
+
 struct run_options {
   const char *out_dir;   /* directory for artifacts, NULL: none are written */
   const char *deck_path; /* CalculiX deck to write instead of solving, NULL: solve */
   const char *path_in;   /* file of a neighbouring design's path to start from, NULL: none */
   const char *path_out;  /* file for the path, for such use, NULL: none */
-  FILE *events;          /* progress as JSON lines, NULL: none */
-  bool verbose;          /* iterations on standard error */
+  /* The solve starts from what is carried, where its mesh has the same topology, and leaves its own
+   * there; nothing when it does not reach its load. NULL: none. */
+  struct run_carry *carry;
+  FILE *events; /* progress as JSON lines, NULL: none */
+  bool verbose; /* iterations on standard error */
   bool (*cancelled)(void *context);
 };
 

@@ -6,8 +6,13 @@ bool solve_has_gravity(const struct job_spec *spec) {
 }
 
 enum status solve_prepare(const struct job_spec *spec, struct solve *solve, struct error *error) {
+  return solve_prepare_with(spec, NULL, solve, error);
+}
+
+enum status solve_prepare_with(const struct job_spec *spec, struct ldlt *spare, struct solve *solve,
+                               struct error *error) {
   enum status status =
-      model_create(&solve->mesh, &spec->material, spec->contact, &solve->model, error);
+      model_create_with(&solve->mesh, &spec->material, spec->contact, spare, &solve->model, error);
   if (status != STATUS_OK) {
     return status;
   }

@@ -17,6 +17,10 @@ struct solve {
  * failures of model_create and equilibrium_create. */
 enum status solve_prepare(const struct job_spec *spec, struct solve *solve, struct error *error);
 
+/* The same with the analysis of another body, as in model_create_with. */
+enum status solve_prepare_with(const struct job_spec *spec, struct ldlt *spare, struct solve *solve,
+                               struct error *error);
+
 /* Releases everything, the mesh too, and clears it. */
 void solve_release(struct solve *solve);
 

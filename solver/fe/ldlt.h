@@ -7,6 +7,7 @@
 #ifndef PNEULAB_FE_LDLT_H
 #define PNEULAB_FE_LDLT_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include "solver/base/error.h"
 
@@ -33,6 +34,10 @@ struct ldlt_statistics {
 /* Orders and analyses. The pattern is copied. On success the caller owns *out (ldlt_destroy). */
 enum status ldlt_create(const struct ldlt_pattern *pattern, struct ldlt **out, struct error *error);
 void ldlt_destroy(struct ldlt *ldlt);
+
+/* Whether an analysis of this pattern would be the same: then it serves the other matrix as well,
+ * whose factorisations come out to the same bits. */
+bool ldlt_fits(const struct ldlt *ldlt, const struct ldlt_pattern *pattern);
 
 /* Factorises the sum of the cliques. values[c] is the upper triangle by rows of clique c in the
  * order of its dofs, or NULL when it is absent this time. Returns the number of negative

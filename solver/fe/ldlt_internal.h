@@ -20,6 +20,8 @@ struct front {
 
 struct ldlt {
   int dof_count, front_count, clique_count;
+  int *pattern; /* node_of, start and dofs of the pattern */
+  size_t pattern_count;
   int *position;       /* dof -> place in elimination order */
   struct front *front; /* in postorder */
   int *row;            /* rows of every front, in elimination order */

@@ -372,6 +372,30 @@ static enum status build(struct analysis *a, struct ldlt *f) {
   return status == STATUS_OK ? allocate_values(f) : status;
 }
 
+/* What decides the analysis, in one array; `count` numbers. */
+static int *list_pattern(const struct ldlt_pattern *p, size_t *count) {
+  size_t nodes = (size_t)p->dof_count, starts = (size_t)p->clique_count + 1;
+  size_t dofs = (size_t)p->start[p->clique_count];
+  int *list = malloc(sizeof *list * (nodes + starts + dofs));
+  *count = nodes + starts + dofs;
+  if (list) {
+    memcpy(list, p->node_of, sizeof *list * nodes);
+    memcpy(list + nodes, p->start, sizeof *list * starts);
+    memcpy(list + nodes + starts, p->dofs, sizeof *list * dofs);
+  }
+  return list;
+}
+
+bool ldlt_fits(const struct ldlt *f, const struct ldlt_pattern *p) {
+  size_t nodes = (size_t)p->dof_count, starts = (size_t)p->clique_count + 1;
+  return f->dof_count == p->dof_count && f->clique_count == p->clique_count &&
+         f->pattern_count == nodes + starts + (size_t)p->start[p->clique_count] &&
+         memcmp(f->pattern, p->node_of, sizeof *f->pattern * nodes) == 0 &&
+         memcmp(f->pattern + nodes, p->start, sizeof *f->pattern * starts) == 0 &&
+         memcmp(f->pattern + nodes + starts, p->dofs,
+                sizeof *f->pattern * (f->pattern_count - nodes - starts)) == 0;
+}
+
 enum status ldlt_create(const struct ldlt_pattern *pattern, struct ldlt **out,
                         struct error *error) {
   struct analysis a = {.pattern = pattern};
@@ -383,7 +407,8 @@ enum status ldlt_create(const struct ldlt_pattern *pattern, struct ldlt **out,
   f->dof_count = pattern->dof_count;
   f->clique_count = pattern->clique_count;
   cholmod_start(&a.common);
-  enum status status = build(&a, f);
+  f->pattern = list_pattern(pattern, &f->pattern_count);
+  enum status status = f->pattern ? build(&a, f) : STATUS_NO_MEMORY;
   if (status != STATUS_OK) {
     error_set(error, status, NULL, "the analysis of %d unknowns failed: %s", f->dof_count,
               status_sentence(status));
@@ -405,6 +430,7 @@ void ldlt_destroy(struct ldlt *f) {
   if (!f) {
     return;
   }
+  free(f->pattern);
   free(f->position);
   free(f->front);
   free(f->row);

@@ -95,10 +95,18 @@ enum status model_analyse(struct fe_model *m, struct error *error) {
   ldlt_destroy(m->ldlt);
   m->ldlt = NULL;
   struct ldlt_pattern pattern = {m->dof_count, mesh->node_count, m->node_of, cliques, start, dofs};
-  status = ldlt_create(&pattern, &m->ldlt, error);
+  if (m->spare && ldlt_fits(m->spare, &pattern)) {
+    m->ldlt = m->spare;
+    m->spare = NULL;
+    status = STATUS_OK;
+  } else {
+    ldlt_destroy(m->spare);
+    m->spare = NULL;
+    status = ldlt_create(&pattern, &m->ldlt, error);
+    m->statistics.analyses++;
+  }
   m->pattern_stale = status != STATUS_OK;
   m->factor = status == STATUS_OK ? ldlt_statistics(m->ldlt) : m->factor;
-  m->statistics.analyses++;
 done:
   free(start);
   free(dofs);
@@ -123,12 +131,20 @@ static bool allocate(struct fe_model *m) {
 
 enum status model_create(const struct mesh *mesh, const struct material_spec *material,
                          bool use_contact, struct fe_model **out, struct error *error) {
+  return model_create_with(mesh, material, use_contact, NULL, out, error);
+}
+
+enum status model_create_with(const struct mesh *mesh, const struct material_spec *material,
+                              bool use_contact, struct ldlt *spare, struct fe_model **out,
+                              struct error *error) {
   struct fe_model *m = calloc(1, sizeof *m);
   *out = NULL;
   if (!m) {
+    ldlt_destroy(spare);
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for a model");
   }
   m->mesh = mesh;
+  m->spare = spare;
   m->material = *material;
   double mu = material_shear_modulus(material);
   m->bulk_modulus = material->bulk_ratio * mu;
@@ -157,7 +173,9 @@ enum status model_create(const struct mesh *mesh, const struct material_spec *ma
     const struct contact_plane mirror = {{0, 0, 0}, {0, 1, 0}, true};
     status = contact_add_plane(&m->contact, &mirror);
   }
-  if (status == STATUS_OK) {
+  if (status == STATUS_OK && spare && allocate_cliques(m, (size_t)mesh->element_count, 0)) {
+    m->pattern_stale = true; /* the contact of the first tangent is not that of the body at rest */
+  } else if (status == STATUS_OK) {
     status = model_analyse(m, error);
   }
   if (status != STATUS_OK) {
@@ -168,12 +186,20 @@ enum status model_create(const struct mesh *mesh, const struct material_spec *ma
   return STATUS_OK;
 }
 
+struct ldlt *model_release_analysis(struct fe_model *m) {
+  struct ldlt *ldlt = m->ldlt;
+  m->ldlt = NULL;
+  m->pattern_stale = true;
+  return ldlt;
+}
+
 void model_destroy(struct fe_model *m) {
   if (!m) {
     return;
   }
   contact_release(&m->contact);
   ldlt_destroy(m->ldlt);
+  ldlt_destroy(m->spare);
   free(m->geometry);
   free(m->internal);
   free(m->cavity_start);

@@ -39,7 +39,7 @@ struct fe_model {
   struct mesh_face *cavity_face;
   double cavity_share[MESH_CAVITIES]; /* pressure in each cavity relative to that of the load: 1
                                        * unless the caller sets it before any state is made */
-  double *dead_load; /* node_count x 3, N at factor 1; the caller may add to it */
+  double *dead_load;                  /* node_count x 3, N at factor 1; the caller may add to it */
   int dof_count;
   int *equation;         /* node_count x 3, -1 where held */
   int *node_of;          /* dof_count */
@@ -51,6 +51,7 @@ struct fe_model {
   bool pattern_stale; /* the pairs of the contact are not those of the analysis */
   struct contact contact;
   struct ldlt *ldlt;
+  struct ldlt *spare; /* the analysis of another model, or NULL */
   struct ldlt_statistics factor; /* of the last analysis */
   struct fe_statistics statistics;
 };
@@ -62,6 +63,16 @@ struct fe_model {
 enum status model_create(const struct mesh *mesh, const struct material_spec *material,
                          bool use_contact, struct fe_model **out, struct error *error);
 void model_destroy(struct fe_model *model);
+
+/* As model_create, with the analysis of another model, which becomes the new one's, or NULL: the
+ * first tangent is assembled with it where it fits. */
+enum status model_create_with(const struct mesh *mesh, const struct material_spec *material,
+                              bool use_contact, struct ldlt *spare, struct fe_model **out,
+                              struct error *error);
+
+/* Takes the analysis out of a model that is solved no more, for model_create_with; ldlt_destroy is
+ * then the caller's. */
+struct ldlt *model_release_analysis(struct fe_model *model);
 
 /* Gives up what only solving needs (factor and tangents): the model can then no
  * longer be evaluated, but volumes, gaps, mesh and statistics are still there. */

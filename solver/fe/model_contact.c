@@ -110,9 +110,12 @@ enum status model_evaluate_contact(struct fe_model *m, const double *u, bool tan
   if (m->use_contact && tangent) {
     struct fe_state state = {.u = (double *)u};
     enum status status = model_search_contact(m, &state);
-    if (status == STATUS_OK && m->pattern_stale) {
-      status = model_analyse(m, NULL);
+    if (status != STATUS_OK) {
+      return status;
     }
+  }
+  if (tangent && m->pattern_stale) {
+    enum status status = model_analyse(m, NULL);
     if (status != STATUS_OK) {
       return status;
     }

@@ -11,9 +11,10 @@ struct head {
   char magic[8];
   uint32_t order, version;
   int32_t node_count, element_count, section_count, point_count, count, reserved;
+  uint64_t topology;
 };
 static const char magic[8] = "pneupath";
-enum { BYTE_ORDER_MARK = 0x01020304, FILE_VERSION = 1, COUNT_MAX = 1 << 24 };
+enum { BYTE_ORDER_MARK = 0x01020304, FILE_VERSION = 2, COUNT_MAX = 1 << 24 };
 
 static bool allocate_state(const struct path_record *r, struct fe_state *state) {
   state->u = malloc(sizeof *state->u * (3 * (size_t)r->node_count + 1));
@@ -43,6 +44,15 @@ static bool grow(struct path_record *r) {
   return allocate_state(r, &r->state[r->count]);
 }
 
+/* A number that tells which nodes make each element (FNV-1a: Fowler, Noll and Vo). */
+static uint64_t mesh_topology(const struct mesh *mesh) {
+  uint64_t hash = 14695981039346656037u;
+  for (size_t i = 0; i < (size_t)HEX27_NODES * (size_t)mesh->element_count; i++) {
+    hash = (hash ^ (uint64_t)mesh->element_nodes[i]) * 1099511628211u;
+  }
+  return hash;
+}
+
 enum status path_record_create(const struct fe_model *m, struct path_record **out) {
   const struct mesh *mesh = m->mesh;
   struct path_record *r = calloc(1, sizeof *r);
@@ -53,7 +63,8 @@ enum status path_record_create(const struct fe_model *m, struct path_record **ou
   *r = (struct path_record){.node_count = mesh->node_count,
                             .element_count = mesh->element_count,
                             .section_count = mesh->section_count,
-                            .point_count = m->contact.point_count};
+                            .point_count = m->contact.point_count,
+                            .topology = mesh_topology(mesh)};
   r->x = malloc(sizeof *r->x * (3 * (size_t)mesh->node_count + 1));
   if (!r->x) {
     path_record_destroy(r);
@@ -110,7 +121,8 @@ static bool write_all(FILE *file, const struct path_record *r) {
                       .element_count = r->element_count,
                       .section_count = r->section_count,
                       .point_count = r->point_count,
-                      .count = r->count};
+                      .count = r->count,
+                      .topology = r->topology};
   memcpy(head.magic, magic, sizeof magic);
   bool good = fwrite(&head, sizeof head, 1, file) == 1 &&
               transfer(file, true, r->x, 3 * (size_t)r->node_count);
@@ -158,7 +170,8 @@ static enum status read_all(FILE *file, struct path_record *r, struct error *err
   *r = (struct path_record){.node_count = h.node_count,
                             .element_count = h.element_count,
                             .section_count = h.section_count,
-                            .point_count = h.point_count};
+                            .point_count = h.point_count,
+                            .topology = h.topology};
   r->x = malloc(sizeof *r->x * (3 * (size_t)r->node_count + 1));
   if (!r->x) {
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for a path");
@@ -200,5 +213,5 @@ enum status path_record_read(const char *path, struct path_record **out, struct 
 bool path_record_fits(const struct path_record *r, const struct fe_model *m) {
   return r->count > 0 && r->node_count == m->mesh->node_count &&
          r->element_count == m->mesh->element_count && r->section_count == m->mesh->section_count &&
-         r->point_count == m->contact.point_count;
+         r->point_count == m->contact.point_count && r->topology == mesh_topology(m->mesh);
 }

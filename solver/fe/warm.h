@@ -8,12 +8,14 @@
 #ifndef PNEULAB_FE_WARM_H
 #define PNEULAB_FE_WARM_H
 
+#include <stdint.h>
 #include "solver/fe/path.h"
 
 /* Recorded states of a path, with the undeformed body they belong to. */
 struct path_record {
   int node_count, element_count, section_count, point_count;
-  double *x; /* node_count x 3, undeformed, m */
+  uint64_t topology; /* of the mesh: bodies with another one are no neighbours */
+  double *x;         /* node_count x 3, undeformed, m */
   int count, capacity;
   double *pressure; /* Pa, rising */
   struct fe_state *state;

@@ -153,7 +153,8 @@ static enum status read_range(const struct reader *reader, const json_t *metrics
 }
 
 static enum accuracy read_accuracy(const char *word) {
-  return strcmp(word, "fast") == 0   ? ACCURACY_FAST
+  return strcmp(word, "draft") == 0  ? ACCURACY_DRAFT
+         : strcmp(word, "fast") == 0 ? ACCURACY_FAST
          : strcmp(word, "fine") == 0 ? ACCURACY_FINE
                                      : ACCURACY_STANDARD;
 }

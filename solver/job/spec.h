@@ -148,7 +148,12 @@ struct load_spec {
   double gravity[3];      /* m/s2 */
 };
 
-enum accuracy { ACCURACY_FAST, ACCURACY_STANDARD, ACCURACY_FINE };
+enum accuracy {
+  ACCURACY_FAST,
+  ACCURACY_STANDARD,
+  ACCURACY_FINE,
+  ACCURACY_DRAFT /* coarser than fast; of bodies in three dimensions */
+};
 
 /* Elements through each feature; 0 leaves the choice to `accuracy`. */
 struct mesh_spec {

@@ -16,6 +16,9 @@ struct tier {
   .top = {.cells = 1}
 
 static const struct tier tiers[] = {
+    [ACCURACY_DRAFT] = {{PLAIN_CELLS, .cavity = {.cells = 1}, .row = {.cells = 1},
+                         .bottom = {.cells = 2, .last = 0.4}, .height = {.cells = 2, .first = 0.4}},
+                        .end = 0.6},
     [ACCURACY_FAST] = {{PLAIN_CELLS, .cavity = {.cells = 2}, .row = {.cells = 2},
                         .bottom = {.cells = 2, .last = 0.4}, .height = {.cells = 2, .first = 0.4}},
                        .end = 0.6},

@@ -21,19 +21,25 @@ static const double sucker_ratio = 3;
 
 /* What the tiers have in common; where a feature has one cell, its length changes little. */
 #define PLAIN_CELLS                                                                                \
-  .gap = {.cells = 1}, .channel = {.cells = 2}, .stem = {.cells = 1}, .side_wall = {.cells = 1},   \
-  .below = {.cells = 1}, .duct = {.cells = 1}, .cover = {.cells = 1}, .slit = {.cells = 1},        \
-  .floor = {.cells = 1}, .top = {.cells = 1}, .sucker = {.cells = 1}
+  .gap = {.cells = 1}, .stem = {.cells = 1}, .side_wall = {.cells = 1}, .below = {.cells = 1},     \
+  .duct = {.cells = 1}, .cover = {.cells = 1}, .slit = {.cells = 1}, .floor = {.cells = 1},        \
+  .top = {.cells = 1}, .sucker = {.cells = 1}
 
 static const struct tier tiers[] = {
-    [ACCURACY_FAST] = {{PLAIN_CELLS, .gap_wall = {.cells = 1}, .cavity = {.cells = 2},
-                        .half_width = {.cells = 1, .last = 0.25},
+    [ACCURACY_DRAFT] = {{PLAIN_CELLS, .channel = {.cells = 1}, .gap_wall = {.cells = 1},
+                         .cavity = {.cells = 1}, .half_width = {.cells = 1, .last = 0.25},
+                         .bottom = {.cells = 2, .last = 0.4},
+                         .height = {.cells = 3, .first = 0.2, .last = 0.6}},
+                        .cavity = 1,
+                        .half_width = 3},
+    [ACCURACY_FAST] = {{PLAIN_CELLS, .channel = {.cells = 2}, .gap_wall = {.cells = 1},
+                        .cavity = {.cells = 2}, .half_width = {.cells = 1, .last = 0.25},
                         .bottom = {.cells = 3, .last = 0.3},
                         .height = {.cells = 3, .first = 0.2, .last = 0.6}},
                        .cavity = 0.5,
                        .half_width = 3},
-    [ACCURACY_STANDARD] = {{PLAIN_CELLS, .gap_wall = {.cells = 1}, .cavity = {.cells = 2},
-                            .half_width = {.cells = 2, .last = 0.25},
+    [ACCURACY_STANDARD] = {{PLAIN_CELLS, .channel = {.cells = 2}, .gap_wall = {.cells = 1},
+                            .cavity = {.cells = 2}, .half_width = {.cells = 2, .last = 0.25},
                             .bottom = {.cells = 3, .last = 0.3},
                             .height = {.cells = 3, .first = 0.2, .last = 0.6}},
                            .cavity = 0.5,

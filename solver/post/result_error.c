@@ -15,7 +15,7 @@ static const struct margin stretch_margin = {1.6, 5e-2}; /* largest in singular 
 
 /* Parts of the tiers, relative to those of standard. */
 static const double tier_share[] = {
-    [ACCURACY_FAST] = 2, [ACCURACY_STANDARD] = 1, [ACCURACY_FINE] = 0.4};
+    [ACCURACY_DRAFT] = 3, [ACCURACY_FAST] = 2, [ACCURACY_STANDARD] = 1, [ACCURACY_FINE] = 0.4};
 
 /* A metric whose own difference happens to be small is taken to be uncertain by this share of the
  * relative difference of the whole deflection. */

@@ -1,0 +1,36 @@
+/* Several jobs in one process, each starting from what the one before has left.
+ *
+ * The file of a bundle is { "members": [ "FOLDER", ... ], "from": "FILE" }. A folder has the job as
+ * job.json; the member's events.jsonl, log.txt, folder out with artifacts and at last result.json
+ * are written there as by a run of its own: result.json is the result, or a document that tells the
+ * error, and has its name only when it is complete. While another member follows, the folder also
+ * has a file `path` with the converged states that it starts from: it goes when that member is
+ * done, so that a bundle which ended in between can be taken up by another one whose `from` names
+ * it, to the same bits.
+ *
+ * On standard output each member has two lines,
+ *   {"event": "begun", "member": 0}
+ *   {"event": "done", "member": 0, "exit": 0, "cpu_s": 1.25, "peak_memory_MB": 88.5}
+ * with the exit code that a run of its own would have had; peak memory is that of the process so
+ * far. A member without a line of the second kind is not done.
+ *
+ * A body whose mesh has another topology than the one before, and one whose predecessor has not
+ * reached its load, starts from the undeformed state. Results depend on the members of the bundle
+ * and their order, and on nothing else. */
+#ifndef PNEULAB_BUNDLE_H
+#define PNEULAB_BUNDLE_H
+
+#include <stdbool.h>
+
+struct bundle_options {
+  const char *file;
+  bool verbose; /* as in struct run_options */
+  bool (*cancelled)(void *context);
+};
+
+/* Solves the members in order, and returns the exit code: EXIT_SUCCEEDED when all are done, however
+ * each of them ended; EXIT_CANCELLED; EXIT_INTERNAL when the file could not be read, a folder could
+ * not be written, or memory ran out (the member then has its error). */
+int bundle_run(const struct bundle_options *options);
+
+#endif
