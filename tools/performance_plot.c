@@ -9,7 +9,7 @@
 enum { FIGURE_WIDTH = 640, FIGURE_HEIGHT = 420, POINTS_MAX = 1000, SERIES_MAX = 8 };
 
 static bool write_chart(const struct chart *chart, const char *directory, const char *name) {
-  struct canvas *canvas = canvas_create(FIGURE_WIDTH, FIGURE_HEIGHT);
+  struct canvas *canvas = canvas_create(FIGURE_WIDTH, FIGURE_HEIGHT, THEME_LIGHT);
   struct canvas_note note = {"Title", chart->title};
   unsigned char *png = NULL;
   char path[4096];
