@@ -44,7 +44,7 @@ handler metrics_show;
 handler session_open, session_close, session_caller;
 
 /* pages.c */
-handler page_job, page_show;
+handler page_job, page_show, page_study;
 /* Whether the request's path names a file of the table static_files, or the start page. */
 bool page_exists(const struct request *request);
 

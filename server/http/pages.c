@@ -96,3 +96,16 @@ void page_job(struct request *request, struct reply *reply) {
     reply_problem(reply, 404, "not_found", "This build carries no pages.");
   }
 }
+
+void page_study(struct request *request, struct reply *reply) {
+  const struct static_file *file = page_find("/study.html");
+  int64_t id;
+  if (!request_id(request, reply, &id)) {
+    return;
+  }
+  if (file) {
+    page_reply(request, reply, file);
+  } else {
+    reply_problem(reply, 404, "not_found", "This build carries no pages.");
+  }
+}

@@ -50,6 +50,7 @@ static const struct route {
     {HTTP_POST, ROLE_NONE, "sign-out", session_close, ""},
     {HTTP_GET, ROLE_NONE, "sign-in", page_show, "next"},
     {HTTP_GET, ROLE_NONE, "jobs/{id}", page_job, NULL},
+    {HTTP_GET, ROLE_NONE, "studies/{id}", page_study, NULL},
 };
 
 /* Matches one segment; a parameter's value is put into *parameter (its suffix cut off). */

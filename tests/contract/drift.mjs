@@ -19,7 +19,7 @@ const unseen = new Map([
 ]);
 
 // Paths that are pages for people; they are not part of the description.
-const page = /^\/($|jobs\/[^/]+$|static\/|docs(\/|$)|[a-z]+\.html$)/;
+const page = /^\/($|(jobs|studies)\/[^/]+$|static\/|docs(\/|$)|[a-z]+\.html$)/;
 
 const [description, ...records] = process.argv.slice(2);
 const contract = new Contract(description);

@@ -1,0 +1,56 @@
+// Colours of the drawings: the map for values is that of the PNG plots.
+
+const MAP = [[68, 1, 84], [70, 50, 126], [54, 92, 141], [39, 127, 142], [31, 161, 135], [74, 193, 109],
+  [159, 218, 58], [253, 231, 37]];
+
+export const SERIES = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#56b4e9', '#e69f00'];
+
+export const dark = window.matchMedia('(prefers-color-scheme: dark)');
+
+// On a light page its yellow end, and on a dark one its dark end, would not be seen as a line.
+function ends() {
+  return dark.matches ? [0.22, 1] : [0, 0.9];
+}
+
+// Red, green and blue at t in 0 .. 1.
+export function shade(t) {
+  const [low, high] = ends();
+  const place = (low + Math.min(Math.max(t, 0), 1) * (high - low)) * (MAP.length - 1);
+  const k = Math.min(Math.floor(place), MAP.length - 2);
+  return MAP[k].map((part, c) => Math.round(part + (place - k) * (MAP[k + 1][c] - part)));
+}
+
+export function shadeText(t) {
+  return `rgb(${shade(t).join(' ')})`;
+}
+
+// 256 shades as red, green, blue one after another.
+export function shades() {
+  const all = new Uint8Array(3 * 256);
+  for (let i = 0; i < 256; i++) {
+    all.set(shade(i / 255), 3 * i);
+  }
+  return all;
+}
+
+export function pageColour(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+}
+
+// The same as red, green, blue; of colours written as #rrggbb.
+export function pageParts(name) {
+  const text = pageColour(name);
+  return [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16));
+}
+
+// The colour of each row by a column: 0 .. 255, and 255 for rows without a value or no column at all.
+export function rowShades(designs, column) {
+  const all = new Uint8Array(designs.count).fill(128);
+  if (column) {
+    for (let row = 0; row < all.length; row++) {
+      const place = column.place(column.data[row]);
+      all[row] = place === place ? Math.round(255 * Math.min(Math.max(place, 0), 1)) : 0;
+    }
+  }
+  return all;
+}
