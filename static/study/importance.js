@@ -36,34 +36,38 @@ function importanceOption({ parameters }) {
   });
   const ink = pageColour('ink');
   return {
-    grid: { left: 8, right: 24, top: 34, bottom: 34, containLabel: true },
+    grid: { left: 140, right: 24, top: 34, bottom: 46 },
     legend: { top: 0, left: 0, itemWidth: 14, textStyle: { color: ink }, data: ['with interactions', 'alone'] },
     xAxis: { type: 'value', min: 0, name: 'share of the variance', nameLocation: 'middle', nameGap: 26,
       axisLabel: { formatter: (value) => `${Math.round(100 * value)} %` } },
     yAxis: { type: 'category', data: list.map(({ title }) => title), axisTick: { show: false },
-      axisLabel: { width: 130, overflow: 'truncate' } },
+      axisLabel: { width: 126, overflow: 'truncate' } },
     tooltip: { trigger: 'axis', axisPointer: { type: 'none' },
       valueFormatter: (value) => `${(100 * value).toFixed(1)} %` },
     series: [bar('alone', ({ first }) => first, SERIES[4]), bar('with interactions', ({ total }) => total, SERIES[0]),
-      interval(list, ({ first }) => first, 0.17, ink), interval(list, ({ total }) => total, -0.17, ink)],
+      interval(list, ({ first }) => first, -0.17, ink), interval(list, ({ total }) => total, 0.17, ink)],
   };
 }
 
+const LEFT = 48; // pixels for the figures of the metric
+
 // One small chart a parameter in one grid, all to the same scale.
-function effectsOption({ metric, main }, shown) {
+function effectsOption({ metric, main }, shown, place) {
   const { length } = shown;
-  const across = length <= 3 ? Math.max(length, 1) : length <= 4 ? 2 : 3;
+  const across = place.clientWidth < 560 ? 1 : length <= 3 ? Math.max(length, 1) : length === 4 ? 4 : 3;
   const down = Math.ceil(length / across);
+  const width = (place.clientWidth - LEFT) / across;
+  const height = place.clientHeight / down;
   const all = main.flatMap(({ low, high }) => [...low, ...high]).filter((value) => value !== null);
   const [least, most] = [Math.min(...all), Math.max(...all)];
   const option = { grid: [], xAxis: [], yAxis: [], series: [], tooltip: { trigger: 'axis', valueFormatter: number } };
   shown.forEach((one, i) => {
     const isWord = typeof one.at[0] === 'string';
-    const left = 100 * (i % across) / across;
-    const top = 100 * Math.floor(i / across) / down;
+    const left = LEFT + (i % across) * width;
+    const top = Math.floor(i / across) * height;
     const points = (values) => (isWord ? values : one.at.map((at, k) => [at, values[k]]));
     const axes = { xAxisIndex: i, yAxisIndex: i };
-    option.grid.push({ left: `${left + 1}%`, top: `${top + 3}%`, width: `${100 / across - 3}%`, height: `${100 / down - 7}%`, containLabel: true });
+    option.grid.push({ left, top: top + 10, width: width - 30, height: height - 60 });
     option.xAxis.push({ gridIndex: i, type: isWord ? 'category' : 'value', data: isWord ? one.at : undefined, scale: true,
       name: one.unit ? `${one.title} (${one.unit})` : one.title, nameLocation: 'middle', nameGap: 24,
       nameTextStyle: { fontSize: 11 }, splitLine: { show: false }, splitNumber: 3, axisLabel: { hideOverlap: true } });
@@ -98,7 +102,7 @@ export function setUpImportance(metric, onShare) {
     const titles = new Map(answer.main.map(({ key, title }) => [key, title]));
     find('pairs').textContent = pairs.length === 0 ? 'No two parameters interact noticeably.'
       : `Interactions: ${pairs.map(({ keys, share }) => `${keys.map((key) => titles.get(key)).join(' × ')} ${percent(share)}`).join(' · ')}`;
-    await lines.show(() => effectsOption(answer, shown), `${answer.metric.title} against each parameter: ${
+    await lines.show(() => effectsOption(answer, shown, find('effects-plot')), `${answer.metric.title} against each parameter: ${
       shown.map((one) => `${one.title} changes it by ${number(size(one))}`).join(', ')}`);
   });
   return [importance, effects];

@@ -21,7 +21,7 @@ export function shade(t) {
 }
 
 export function shadeText(t) {
-  return `rgb(${shade(t).join(' ')})`;
+  return `rgb(${shade(t).join(',')})`;
 }
 
 // 256 shades as red, green, blue one after another.

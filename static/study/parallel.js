@@ -157,13 +157,18 @@ export class Parallel {
     if (first) {
       this.stopsOf = this.all;
       this.stops = this.columns.map((_, axis) => Math.round(this.x(axis) * this.scale));
-      this.drawBack();
+      this.hasBack = false;
     }
     this.drawChosen();
     const tone = Math.max(selection.count / 700, 0.35);
     this.chosen.paint(this.pixels, shades(), Math.round(4 * tone) / 4 || 0.35);
     this.front.getContext('2d').putImageData(this.pixels, 0, 0);
-    this.back.style.opacity = selection.count === designs.count ? '0' : '1';
+    const isSome = selection.count < designs.count;
+    if (isSome && !this.hasBack) {
+      this.hasBack = true;
+      this.drawBack();
+    }
+    this.back.style.opacity = isSome ? '1' : '0';
   }
 
   // All designs, quietly, behind those that are selected.

@@ -13,9 +13,9 @@ function option({ metric, left_out: { known, predicted, deviation, jobs } }) {
   const ends = [Math.min(...all), Math.max(...all)];
   const data = known.map((value, i) => [value, predicted[i], 1.96 * deviation[i], jobs[i]]);
   return {
-    grid: { left: 12, right: 20, top: 14, bottom: 34, containLabel: true },
+    grid: { left: 68, right: 20, top: 14, bottom: 48 },
     xAxis: { type: 'value', scale: true, name: `${name}, solved`, nameLocation: 'middle', nameGap: 28 },
-    yAxis: { type: 'value', scale: true, name: 'predicted without it', nameLocation: 'middle', nameGap: 44 },
+    yAxis: { type: 'value', scale: true, name: 'predicted without it', nameLocation: 'middle', nameGap: 46 },
     tooltip: { formatter: ({ value: [x, y, half, job] }) => `job ${job}\nsolved ${number(x)}\npredicted ${number(y)} ± ${number(half)}` },
     series: [
       { type: 'line', data: [[ends[0], ends[0]], [ends[1], ends[1]]], symbol: 'none', silent: true,

@@ -54,7 +54,7 @@ export class Ranking {
     };
     select.addEventListener('change', follow);
     range.addEventListener('input', follow);
-    return make('div', { class: 'slider' }, make('label', { for: id }, column.title), select, range);
+    return make('div', { class: 'slider weight' }, make('label', { for: id }, column.title), select, range);
   }
 
   text() {

@@ -28,9 +28,9 @@ function mapOption(answer, shows) {
   });
   const words = [0, 0.25, 0.5, 0.75, 1].map(shadeText);
   return {
-    grid: { left: 16, right: 84, top: 14, bottom: 34, containLabel: true },
+    grid: { left: y.values.some((v) => typeof v === 'string') ? 120 : 64, right: 76, top: 14, bottom: 48 },
     xAxis: axis(x, 28),
-    yAxis: axis(y, 44),
+    yAxis: axis(y, y.values.some((v) => typeof v === 'string') ? 104 : 46),
     visualMap: {
       type: 'continuous', min: Math.min(...all), max: Math.max(...all), calculable: false, right: 0, top: 'middle',
       itemWidth: 12, itemHeight: 150, precision: 3, inRange: { color: words }, textStyle: { color: pageColour('ink'), fontSize: 11 },
@@ -53,7 +53,7 @@ function lineOption(answer) {
   const points = (pick) => mean.map((value, i) => (isWord ? pick(value, i) : [x.values[i], pick(value, i)]));
   const band = { type: 'line', stack: 'band', stackStrategy: 'all', symbol: 'none', lineStyle: { opacity: 0 }, silent: true };
   return {
-    grid: { left: 16, right: 20, top: 14, bottom: 34, containLabel: true },
+    grid: { left: 72, right: 20, top: 14, bottom: 48 },
     xAxis: { type: isWord ? 'category' : x.logarithmic ? 'log' : 'value', data: isWord ? x.values : undefined, scale: true, name: axisName(x),
       nameLocation: 'middle', nameGap: 28 },
     yAxis: { type: 'value', scale: true, name: axisName(metric), nameLocation: 'middle', nameGap: 44 },
