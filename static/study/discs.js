@@ -1,6 +1,6 @@
 // Round marks in a picture of pixels, many at a time.
 
-// A disc as pixels: [across, along, share that is covered] each.
+// A disc as pixels: across, along, share that is covered, one after another.
 export function discOf(radius) {
   const cells = [];
   const reach = Math.ceil(radius + 1);
@@ -8,29 +8,27 @@ export function discOf(radius) {
     for (let x = -reach; x <= reach; x++) {
       const cover = Math.min(Math.max(radius + 0.5 - Math.hypot(x, y), 0), 1);
       if (cover > 0) {
-        cells.push([x, y, cover]);
+        cells.push(x, y, cover);
       }
     }
   }
-  return cells;
+  return Float32Array.from(cells);
 }
 
-// Lays a disc over the pixels (RGBA) at x, y with a colour at colours[at], at + 1, at + 2.
-export function stamp(pixels, cells, x, y, colours, at, opacity) {
-  const { width, height, data } = pixels;
-  for (const [across, along, cover] of cells) {
-    const column = x + across;
-    const row = y + along;
-    if (column < 0 || row < 0 || column >= width || row >= height) {
-      continue;
-    }
-    const i = 4 * (row * width + column);
-    const share = cover * opacity;
+// Lays a disc over the pixels (RGBA) at x, y with the colour at colours[at] to colours[at + 2]. It must
+// lie within the picture.
+export function stamp({ width, data }, cells, x, y, colours, at, opacity) {
+  const red = colours[at];
+  const green = colours[at + 1];
+  const blue = colours[at + 2];
+  for (let k = 0; k < cells.length; k += 3) {
+    const i = 4 * ((y + cells[k + 1]) * width + x + cells[k]);
+    const share = cells[k + 2] * opacity;
     const under = data[i + 3] / 255 * (1 - share);
     const whole = share + under;
-    for (let c = 0; c < 3; c++) {
-      data[i + c] = (colours[at + c] * share + data[i + c] * under) / whole;
-    }
+    data[i] = (red * share + data[i] * under) / whole;
+    data[i + 1] = (green * share + data[i + 1] * under) / whole;
+    data[i + 2] = (blue * share + data[i + 2] * under) / whole;
     data[i + 3] = 255 * whole;
   }
 }

@@ -24,17 +24,25 @@ export function shadeText(t) {
   return `rgb(${shade(t).join(',')})`;
 }
 
-// 256 shades as red, green, blue one after another.
-export function shades() {
-  const all = new Uint8Array(3 * 256);
-  for (let i = 0; i < 256; i++) {
-    all.set(shade(i / 255), 3 * i);
+// What follows from the colours of the page is worked out once for each of the two.
+const kept = new Map();
+dark.addEventListener('change', () => kept.clear());
+
+function once(name, make) {
+  if (!kept.has(name)) {
+    kept.set(name, make());
   }
-  return all;
+  return kept.get(name);
 }
 
+// 256 shades as red, green, blue one after another.
+export function shades() {
+  return once('shades', () => Uint8Array.from({ length: 3 * 256 }, (_, i) => shade(Math.floor(i / 3) / 255)[i % 3]));
+}
+
+// A colour of the style sheets by the name of its variable.
 export function pageColour(name) {
-  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  return once(name, () => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim());
 }
 
 // The same as red, green, blue; of colours written as #rrggbb.

@@ -23,7 +23,8 @@ export class Parallel {
     this.axisLayer = addCanvas(place);
     this.heads = [];
     this.draw = eachFrame(() => this.paint());
-    this.changed = new Set();
+    this.isDue = new Uint8Array(designs.count); // rows whose lines are to be added or taken out
+    this.due = [];
     this.hovered = -1;
     selection.listen((changed) => this.follow(changed));
     followSize(place, (width, height) => this.resize(width, height));
@@ -59,10 +60,10 @@ export class Parallel {
     for (const canvas of [this.marks, this.axisLayer]) {
       fit(canvas, this.width, this.height, sharpness());
     }
-    const { width, height } = this.front;
-    this.all = new Density(width, height);
-    this.chosen = new Density(width, height);
-    this.pixels = new ImageData(width, height);
+    this.stops = this.columns.map((_, axis) => Math.round(this.x(axis) * scale));
+    this.gaps = this.stops.slice(1).map((stop, gap) =>
+      new Density(stop - this.stops[gap], this.front.height, this.designs.count <= MANY));
+    this.hasBack = false;
     this.places = this.columns.map((column) => column.places());
     this.shades = rowShades(this.designs, this.colour);
     this.isWhole = false;
@@ -102,15 +103,17 @@ export class Parallel {
 
   // ---- lines -----------------------------------------------------------------------------------
 
-  addLine(density, row, sign) {
-    const { places, scale, inner } = this;
-    const shade = this.shades[row];
-    const tall = (inner - 2) * scale;
-    for (let axis = 0; axis + 1 < places.length; axis++) {
-      const from = places[axis][row];
-      const to = places[axis + 1][row];
-      if (from === from && to === to) {
-        density.line(this.stops[axis], (1 - from) * tall, this.stops[axis + 1], (1 - to) * tall, shade, sign);
+  // Adds rows to a gap, or takes out those that are not selected any more. Gap by gap, since all rows of
+  // one gap go to the same piece of memory.
+  addLines(gap, density, rows, signOf) {
+    const from = this.places[gap];
+    const to = this.places[gap + 1];
+    const tall = density.height - 2;
+    for (const row of rows) {
+      const a = from[row];
+      const b = to[row];
+      if (a === a && b === b) {
+        density.line((1 - a) * tall, (1 - b) * tall, this.shades[row], signOf(row));
       }
     }
   }
@@ -121,9 +124,8 @@ export class Parallel {
     }
     if (this.isWhole) {
       for (const row of changed) { // one that comes and goes before the picture is not drawn at all
-        if (!this.changed.delete(row)) {
-          this.changed.add(row);
-        }
+        this.isDue[row] ^= 1;
+        this.due.push(row);
       }
     }
     this.heads.forEach((head) => head.follow());
@@ -131,38 +133,36 @@ export class Parallel {
   }
 
   drawChosen() {
-    const { designs, selection } = this;
+    const { selection } = this;
     if (this.isWhole) {
-      for (const row of this.changed) {
-        this.addLine(this.chosen, row, selection.has(row) ? 1 : -1);
-      }
+      const rows = this.due.filter((row) => {
+        const isDue = this.isDue[row] === 1;
+        this.isDue[row] = 0;
+        return isDue;
+      });
+      const sign = (row) => (selection.has(row) ? 1 : -1);
+      this.gaps.forEach((density, gap) => this.addLines(gap, density, rows, sign));
     } else {
-      this.chosen.clear();
-      for (let row = 0; row < designs.count; row++) {
-        if (selection.has(row)) {
-          this.addLine(this.chosen, row, 1);
-        }
-      }
+      const rows = selection.rows();
+      this.gaps.forEach((density, gap) => {
+        density.clear();
+        this.addLines(gap, density, rows, () => 1);
+      });
+      this.isDue.fill(0);
       this.isWhole = true;
     }
-    this.changed.clear();
+    this.due.length = 0;
   }
 
   paint() {
     const { designs, selection } = this;
-    if (!this.all) {
+    if (!this.gaps) {
       return;
     }
-    const first = !this.stops || this.stopsOf !== this.all;
-    if (first) {
-      this.stopsOf = this.all;
-      this.stops = this.columns.map((_, axis) => Math.round(this.x(axis) * this.scale));
-      this.hasBack = false;
-    }
     this.drawChosen();
-    const tone = Math.max(selection.count / 700, 0.35);
-    this.chosen.paint(this.pixels, shades(), Math.round(4 * tone) / 4 || 0.35);
-    this.front.getContext('2d').putImageData(this.pixels, 0, 0);
+    const tone = Math.max(Math.round(selection.count / 350) / 2, 0.35);
+    const context = this.front.getContext('2d');
+    this.gaps.forEach((density, gap) => context.putImageData(density.paint(shades(), tone), this.stops[gap], 0));
     const isSome = selection.count < designs.count;
     if (isSome && !this.hasBack) {
       this.hasBack = true;
@@ -174,15 +174,15 @@ export class Parallel {
   // All designs, quietly, behind those that are selected.
   drawBack() {
     const grey = pageParts('plot-quiet');
-    const colours = new Uint8Array(3 * 256);
-    for (let i = 0; i < 256; i++) {
-      colours.set(grey, 3 * i);
-    }
-    for (let row = 0; row < this.designs.count; row++) {
-      this.addLine(this.all, row, 1);
-    }
-    this.all.paint(this.pixels, colours, Math.max(this.designs.count / 250, 1));
-    this.back.getContext('2d').putImageData(this.pixels, 0, 0);
+    const colours = Uint8Array.from({ length: 3 * 256 }, (_, i) => grey[i % 3]);
+    const rows = Uint32Array.from({ length: this.designs.count }, (_, i) => i);
+    const context = this.back.getContext('2d');
+    const tone = Math.max(this.designs.count / 250, 1);
+    this.gaps.forEach(({ width, height, isSoft }, gap) => {
+      const density = new Density(width, height, isSoft);
+      this.addLines(gap, density, rows, () => 1);
+      context.putImageData(density.paint(colours, tone), this.stops[gap], 0);
+    });
   }
 
   // ---- axes ------------------------------------------------------------------------------------
