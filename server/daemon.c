@@ -27,6 +27,7 @@
 #include "server/maintenance.h"
 #include "server/store/store.h"
 #include "server/study/conductor.h"
+#include "server/study/tables.h"
 #include "solver/job/spec.h"
 
 enum { SIGNAL_POLL_MS = 100 };
@@ -104,6 +105,9 @@ static enum status parts_open_store(const struct options *options, struct parts 
     status = answers_create(service->store, &service->answers, error);
   }
   if (status == STATUS_OK) {
+    status = tables_create(service->store, &service->tables, error);
+  }
+  if (status == STATUS_OK) {
     status = feed_create(service->store, options->subscribers, &service->feed, error);
   }
   if (recovered > 0) {
@@ -179,6 +183,7 @@ static void parts_close(struct parts *parts) {
   conductor_destroy(parts->service.conductor); /* which wakes it */
   feed_destroy(parts->service.feed);
   http_meter_destroy(parts->service.meter);
+  tables_destroy(parts->service.tables);
   answers_destroy(parts->service.answers);
   isolation_release(&parts->isolation);
   janitor_destroy(parts->janitor);

@@ -13,6 +13,9 @@ handler job_show, job_delete, job_cancel, job_hold, job_release, job_document;
 /* retry.c, patch.c */
 handler job_retry, job_patch;
 
+/* study.c */
+handler study_show, study_designs, study_extend;
+
 /* events.c: the stream of news */
 handler events_show;
 

@@ -99,6 +99,12 @@ static json_t *links_view(const struct service *service, const struct job_record
   link_set(links, "document", record->id, "/document");
   link_set(links, "attempts", record->id, "/attempts");
   link_set(links, "log", record->id, "/log");
+  bool study = strcmp(record->kind, "study") == 0;
+  if (study || record->study_id != 0) {
+    snprintf(path, sizeof path, "/api/v1/studies/%lld",
+             (long long)(study ? record->id : record->study_id));
+    json_object_set_new(links, "study", json_string(path));
+  }
   if (record->has_result) {
     link_set(links, "result", record->id, "/result");
     link_set(links, "metrics", record->id, "/metrics");
@@ -139,6 +145,13 @@ json_t *job_view(const struct service *service, const struct job_record *record,
   }
   if (view && record->waits_for != 0) {
     json_object_set_new(view, "waits_for", json_integer(record->waits_for));
+  }
+  if (view && record->study_id != 0) {
+    json_object_set_new(view, "study", json_integer(record->study_id));
+    json_object_set_new(view, "member", json_integer(record->member));
+  }
+  if (view && record->extends != 0) {
+    json_object_set_new(view, "extends", json_integer(record->extends));
   }
   if (view && record->has_result) {
     json_object_set(view, "metrics", record->metrics);

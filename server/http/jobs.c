@@ -172,12 +172,31 @@ static json_t *list_view(const struct service *service, struct job_record *recor
   return json_pack("{s:o, s:s?}", "jobs", jobs, "next", next);
 }
 
+/* "study=12" or "study=none". */
+static bool list_study(const struct request *request, struct reply *reply,
+                       struct list_query *query) {
+  const char *word = url_query(&request->url, "study");
+  if (word && strcmp(word, "none") == 0) {
+    query->study = LIST_STUDY_NONE;
+    return true;
+  }
+  if (word && (*word < '0' || *word > '9')) {
+    reply_problem(reply, 400, "invalid_query",
+                  "study=%.40s: expected the id of a study, or none for jobs that belong to none, "
+                  "for example study=12.",
+                  word);
+    return false;
+  }
+  return request_query_integer(request, reply, "study", 1, INT64_MAX, LIST_STUDY_ANY,
+                               &query->study);
+}
+
 bool jobs_query(const struct request *request, struct reply *reply, struct list_query *query) {
   int64_t limit;
   *query = (struct list_query){.kind = url_query(&request->url, "kind"),
                                .cursor = url_query(&request->url, "cursor")};
-  if (!list_states(request, reply, query) || !list_labels(request, reply, query) ||
-      !list_sort(request, reply, query) ||
+  if (!list_states(request, reply, query) || !list_study(request, reply, query) ||
+      !list_labels(request, reply, query) || !list_sort(request, reply, query) ||
       !request_query_integer(request, reply, "limit", 1, LIST_LIMIT_MAX, LIST_LIMIT, &limit)) {
     return false;
   }

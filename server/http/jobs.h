@@ -4,7 +4,7 @@
 
 #include "server/http/service.h"
 
-/* The query parameters of a list of jobs: state, kind, label.NAME, sort, cursor and limit. The
+/* The query parameters of a list of jobs: state, kind, study, label.NAME, sort, cursor and limit. The
  * texts are those of the request. Otherwise replies 400 and returns false. */
 bool jobs_query(const struct request *request, struct reply *reply, struct list_query *query);
 

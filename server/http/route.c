@@ -15,7 +15,7 @@ static const struct route {
   const char *query; /* names of its query parameters; all that start with one that ends in a dot;
                         NULL: whatever */
 } routes[] = {
-    {HTTP_GET, ROLE_READ, "api/v1/jobs", jobs_list, "state kind label. sort cursor limit"},
+    {HTTP_GET, ROLE_READ, "api/v1/jobs", jobs_list, "state kind study label. sort cursor limit"},
     {HTTP_POST, ROLE_SUBMIT, "api/v1/jobs", jobs_submit, ""},
     {HTTP_POST, ROLE_READ, "api/v1/jobs:validate", jobs_validate, ""},
     {HTTP_GET, ROLE_READ, "api/v1/jobs/{id}", job_show, ""},
@@ -36,6 +36,9 @@ static const struct route {
      "width height theme metric"},
     {HTTP_GET, ROLE_READ, "api/v1/plots/overlay.png", plot_overlay, "jobs width height theme"},
     {HTTP_GET, ROLE_READ, "api/v1/compare", compare_show, "jobs"},
+    {HTTP_GET, ROLE_READ, "api/v1/studies/{id}", study_show, ""},
+    {HTTP_GET, ROLE_READ, "api/v1/studies/{id}/designs", study_designs, "format sort cursor limit"},
+    {HTTP_POST, ROLE_SUBMIT, "api/v1/studies/{id}/extend", study_extend, ""},
     {HTTP_GET, ROLE_READ, "api/v1/events", events_show, "job label. after"},
     {HTTP_GET, ROLE_ADMIN, "api/v1/database", database_show, ""},
     {HTTP_GET, ROLE_READ, "api/v1/materials", catalogue_materials, ""},

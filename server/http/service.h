@@ -26,6 +26,7 @@ struct http_meter;
 struct isolation;
 struct job_reader;
 struct snapshots;
+struct tables;
 struct waiters;
 
 enum { HTTP_BODY_MAX = 1 << 20, HTTP_WAIT_MAX_S = 60, CLIENT_SIZE = 46 };
@@ -40,6 +41,7 @@ struct service {
   struct snapshots *snapshots;       /* copies of the database */
   struct feed *feed;                 /* the stream of events */
   struct answers *answers;           /* kept answers */
+  struct tables *tables;             /* kept tables of studies */
   struct access *access;             /* who may come in */
   struct job_reader *reader;         /* checks job documents */
   const char *data;                  /* data directory */

@@ -111,9 +111,25 @@ static enum start range_start(const struct branches *all, enum job_state state) 
   return order < 0 ? START_NOWHERE : order > 0 ? START_FIRST : START_ID;
 }
 
+/* The index of a range of the members of a study, or of jobs that belong to none; of each the
+ * tables have their own. Members of a study are of one kind. */
+static void range_index(const struct list_query *query, bool ids, char *text, size_t size) {
+  bool single = query->study == LIST_STUDY_NONE;
+  snprintf(text, size, " INDEXED BY job_%s_by%s%s", single ? "single" : "member",
+           single && query->kind ? "_kind" : "",
+           !ids                    ? query->sort == LIST_BY_NAME ? "_name" : "_finished"
+           : single && query->kind ? ""
+                                   : "_state");
+}
+
+/* Whether rows of a range have to be looked at one by one. */
+static bool range_looks(const struct list_query *query) {
+  return query->label_count > 1 || (query->label_count > 0 && query->study != LIST_STUDY_ANY);
+}
+
 /* The text of a range's query: id and key of its rows, and whether the other labels are there, too.
  * Parameters: 1, 2 label and value, 3 kind, 4 state, 5 key and 6 id of
- * the place, 7 how many; from 8 on the other labels. */
+ * the place, 7 how many, 8 the study; from 9 on the other labels. */
 static void range_sql(const struct branches *all, enum start start, bool ids, char sql[SQL_SIZE]) {
   const struct list_query *query = all->query;
   bool labels = query->label_count > 0, names = query->sort == LIST_BY_NAME;
@@ -122,8 +138,12 @@ static void range_sql(const struct branches *all, enum start start, bool ids, ch
   const char *sign = query->descending ? "<" : ">", *way = query->descending ? "DESC" : "ASC";
   size_t used = 0;
 #define ADD(...) used += (size_t)snprintf(sql + used, SQL_SIZE - used, __VA_ARGS__)
+  char index[80] = "";
+  if (query->study != LIST_STUDY_ANY && !labels) {
+    range_index(query, ids, index, sizeof index);
+  }
   ADD("SELECT %s, %s, 1", id, ids ? "0" : key);
-  for (size_t i = 0, parameter = 8; i < query->label_count; i++) {
+  for (size_t i = 0, parameter = 9; i < query->label_count; i++) {
     if (i != all->label) {
       ADD(" AND EXISTS (SELECT 1 FROM job_label AS l WHERE l.job_id = j.job_id AND l.name = ?%zu "
           "AND l.value = ?%zu)",
@@ -131,7 +151,13 @@ static void range_sql(const struct branches *all, enum start start, bool ids, ch
       parameter += 2;
     }
   }
-  ADD(" FROM %s AS j WHERE j.state = ?4", table);
+  if (query->study != LIST_STUDY_ANY && labels) {
+    ADD(" AND (SELECT study_id FROM job WHERE id = j.job_id) IS nullif(?8, %d)", LIST_STUDY_NONE);
+  }
+  ADD(" FROM %s AS j%s WHERE j.state = ?4", table, index);
+  if (query->study != LIST_STUDY_ANY && !labels) {
+    ADD(query->study == LIST_STUDY_NONE ? " AND j.study_id IS NULL" : " AND j.study_id = ?8");
+  }
   if (labels) {
     ADD(" AND j.name = ?1 AND j.value = ?2");
   }
@@ -157,7 +183,7 @@ static void range_bind(const struct branches *all, sqlite3_stmt *statement, cons
                        enum job_state state) {
   const struct list_query *query = all->query;
   bool names = query->sort == LIST_BY_NAME;
-  int parameter = 8, count = sqlite3_bind_parameter_count(statement);
+  int parameter = 9, count = sqlite3_bind_parameter_count(statement);
   if (query->label_count > 0) {
     sqlite3_bind_text(statement, 1, query->labels[all->label].name, -1, SQLITE_STATIC);
     sqlite3_bind_text(statement, 2, query->labels[all->label].value, -1, SQLITE_STATIC);
@@ -170,7 +196,8 @@ static void range_bind(const struct branches *all, sqlite3_stmt *statement, cons
     sqlite3_bind_int64(statement, 5, all->after->number);
   }
   sqlite3_bind_int64(statement, 6, all->after ? all->after->id : 0);
-  sqlite3_bind_int64(statement, 7, query->label_count > 1 ? LOOK_MAX : (int64_t)all->most);
+  sqlite3_bind_int64(statement, 7, range_looks(query) ? LOOK_MAX : (int64_t)all->most);
+  sqlite3_bind_int64(statement, 8, query->study);
   for (size_t i = 0; i < query->label_count && parameter + 1 <= count; i++) {
     if (i != all->label) {
       sqlite3_bind_text(statement, parameter++, query->labels[i].name, -1, SQLITE_STATIC);

@@ -109,7 +109,8 @@ static void take_attempt(json_t *into, sqlite3_stmt *row) {
   "job.attempt, coalesce(job.retry_of, 0), job.created_ms, coalesce(job.started_ms, 0), "          \
   "coalesce(job.finished_ms, 0), EXISTS (SELECT 1 FROM result WHERE result.job_id = job.id), "     \
   "job.retry_reason, job.submitter, job.priority, coalesce(job.reused_from, 0), "                  \
-  "coalesce(job.waits_for, 0)"
+  "coalesce(job.waits_for, 0), coalesce(job.study_id, 0), coalesce(job.member, 0), "               \
+  "coalesce(job.extends, 0)"
 
 /* Fills *record from a row of JOB_COLUMNS and reads labels, metrics, artifacts. */
 static enum status row_read(sqlite3 *db, sqlite3_stmt *row, struct job_record *record,
@@ -131,6 +132,9 @@ static enum status row_read(sqlite3 *db, sqlite3_stmt *row, struct job_record *r
                                 .priority = sqlite3_column_int(row, 15),
                                 .reused_from = sqlite3_column_int64(row, 16),
                                 .waits_for = sqlite3_column_int64(row, 17),
+                                .study_id = sqlite3_column_int64(row, 18),
+                                .member = sqlite3_column_int64(row, 19),
+                                .extends = sqlite3_column_int64(row, 20),
                                 .labels = json_object(),
                                 .metrics = json_object(),
                                 .artifacts = json_array()};

@@ -170,6 +170,8 @@ struct job_record {
   char *retry_reason, *submitter;
   int priority;
   int64_t reused_from, waits_for;              /* 0: none */
+  int64_t study_id, member;                    /* of a member of a study; study_id 0: of none */
+  int64_t extends;                             /* of a study: the one that it continues, or 0 */
   int64_t created_ms, started_ms, finished_ms; /* 0: not yet */
   bool has_result;
   json_t *labels;    /* object of strings */
@@ -183,9 +185,13 @@ void job_record_clear(struct job_record *record);
 enum status store_job(struct store *store, int64_t id, struct job_record *record,
                       struct error *error);
 
+/* Instead of a study in a list query. */
+enum { LIST_STUDY_ANY = 0, LIST_STUDY_NONE = -1 };
+
 struct list_query {
   bool states[JOB_STATE_COUNT]; /* wanted states; none set: all */
   const char *kind;             /* or NULL */
+  int64_t study;                /* its members; LIST_STUDY_NONE: members of no study; or any jobs */
   struct {
     const char *name, *value;
   } labels[STORE_LABELS_MAX];

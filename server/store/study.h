@@ -93,6 +93,16 @@ enum status store_study_members(struct store *store, int64_t id, struct study_me
 enum status store_study_counts(struct store *store, int64_t id, int64_t counts[JOB_STATE_COUNT],
                                struct error *error);
 
+/* What tells whether a study is still what it was. */
+struct study_stamp {
+  bool terminal;
+  int64_t finished_ms, members;
+};
+
+/* STATUS_NOT_FOUND when there is no such study. */
+enum status store_study_stamp(struct store *store, int64_t id, struct study_stamp *stamp,
+                              struct error *error);
+
 /* Seconds of processor time that the members' workers have used. */
 enum status store_study_cpu(struct store *store, int64_t id, double *cpu_s, struct error *error);
 

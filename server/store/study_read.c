@@ -128,6 +128,34 @@ enum status store_study_running(struct store *store, int64_t id, int64_t *ids, s
   return status;
 }
 
+enum status store_study_stamp(struct store *store, int64_t id, struct study_stamp *stamp,
+                              struct error *error) {
+  sqlite3_stmt *statement = NULL;
+  int row = 0;
+  sqlite3 *db = store_read_begin(store, error);
+  if (!db) {
+    return STATUS_IO;
+  }
+  enum status status = sql_prepare(db, &statement, error,
+                                   "SELECT finished_ms IS NOT NULL, coalesce(finished_ms, 0), "
+                                   "(SELECT count(*) FROM job WHERE study_id = ?1) FROM job "
+                                   "WHERE id = ?1 AND kind = 'study'",
+                                   "i", id);
+  if (status == STATUS_OK) {
+    status = sql_step(statement, &row, error);
+  }
+  if (status == STATUS_OK && row) {
+    *stamp = (struct study_stamp){.terminal = sqlite3_column_int(statement, 0) != 0,
+                                  .finished_ms = sqlite3_column_int64(statement, 1),
+                                  .members = sqlite3_column_int64(statement, 2)};
+  } else if (status == STATUS_OK) {
+    status = error_set(error, STATUS_NOT_FOUND, NULL, "There is no study %lld.", (long long)id);
+  }
+  sql_done(statement);
+  store_read_end(store, db);
+  return status;
+}
+
 /* ---- one job and its study ---------------------------------------------------------------- */
 
 enum status study_live(int64_t id, enum job_state state, struct error *error) {

@@ -12,14 +12,16 @@ static void fill(void) {
     bool terminal = job_state_terminal((enum job_state)state);
     snprintf(
         sql, sizeof sql,
-        "INSERT INTO job (state, kind, name, document, spec_hash, created_ms, finished_ms) "
-        "VALUES ('%s', '%s', 'name %d', '{}', 'h', %d, nullif(%d, 0));"
+        "INSERT INTO job (state, kind, name, document, spec_hash, created_ms, finished_ms, "
+        "study_id, member) VALUES ('%s', '%s', 'name %d', '{}', 'h', %d, nullif(%d, 0), "
+        "nullif(%d, 0), iif(%d, %d, NULL));"
         "INSERT INTO job_label (job_id, name, value, kind, state, finished_ms, job_name) SELECT "
         "id, l.column1, l.column2, kind, state, finished_ms, name FROM job, (VALUES "
         "('half', '%d'), ('tenth', '%d'), ('all', 'x')) AS l WHERE id = last_insert_rowid()",
         job_state_word((enum job_state)state),
         (const char *[]){"response", "snap", "hlpv"}[i % 5 % 3], i * 5 % 9, i,
-        terminal ? 1000 + i * 13 % 17 : 0, i % 2, i % 10);
+        terminal ? 1000 + i * 13 % 17 : 0, 1000 * (i * 7 % 23 % 3), i * 7 % 23 % 3, i, i % 2,
+        i % 10);
     ck_assert(sql_allowed(sql));
   }
 }
@@ -46,6 +48,10 @@ static char *plain_ids(const struct list_query *query) {
                           states);
   if (query->kind) {
     used += (size_t)snprintf(sql + used, sizeof sql - used, " AND kind = '%s'", query->kind);
+  }
+  if (query->study != LIST_STUDY_ANY) {
+    used += (size_t)snprintf(sql + used, sizeof sql - used, " AND study_id IS nullif(%d, -1)",
+                             (int)query->study);
   }
   for (size_t i = 0; i < query->label_count; i++) {
     used += (size_t)snprintf(sql + used, sizeof sql - used,
@@ -113,6 +119,7 @@ START_TEST(pages_agree_with_a_plain_query) {
     for (int s = 0; s < 3; s++) {
       for (size_t labels = 0; labels < 4; labels++) {
         struct list_query query = {.kind = kinds[k], .limit = 7 + 20 * s, .label_count = labels};
+        query.study = (int64_t[]){LIST_STUDY_ANY, LIST_STUDY_NONE, 2000}[(k + s + (int)labels) % 3];
         query.states[JOB_STATE_SUCCEEDED] = s > 0;
         query.states[JOB_STATE_QUEUED] = query.states[JOB_STATE_FAILED] = s > 1;
         query.labels[0].name = "half", query.labels[0].value = "1";
