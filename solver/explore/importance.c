@@ -82,6 +82,86 @@ done:
   return status;
 }
 
+/* ---- pairs -------------------------------------------------------------------------------- */
+
+/* What each point adds to the variance and to the part of it that is of i and k together and of
+ * neither alone. A point of the first set whose k comes from the second, and one of the second
+ * whose i comes from the first, have i and k in common. */
+static void pair_terms(const double *a, const double *b, const double *const mixed[],
+                       const double *const back[], int count, int i, int k, double mean,
+                       double *term) {
+  for (int j = 0; j < count; j++) {
+    double p = a[j] - mean, q = b[j] - mean;
+    double both = 0.5 * ((mixed[k][j] - mean) * (back[i][j] - mean) +
+                         (mixed[i][j] - mean) * (back[k][j] - mean)) -
+                  p * q;
+    double alone = 0.0;
+    alone += 0.5 * (q * (mixed[i][j] - a[j]) + p * (back[i][j] - b[j]));
+    alone += 0.5 * (q * (mixed[k][j] - a[j]) + p * (back[k][j] - b[j]));
+    term[j] = both - alone;
+  }
+}
+
+/* The ratio of two sums over all points, and its interval over the draws. */
+static struct share ratio_share(const double *term, const double *square, int count,
+                                const int *draws, double *values) {
+  double above = 0.0, below = 0.0;
+  for (int j = 0; j < count; j++) {
+    above += term[j];
+    below += square[j];
+  }
+  if (below <= 0.0) {
+    return (struct share){0.0, 0.0, 0.0};
+  }
+  for (int repeat = 0; repeat < REPEATS; repeat++) {
+    const int *draw = draws + (size_t)repeat * (size_t)count;
+    double sum = 0.0, squares = 0.0;
+    for (int j = 0; j < count; j++) {
+      sum += term[draw[j]];
+      squares += square[draw[j]];
+    }
+    values[repeat] = squares > 0.0 ? sum / squares : 0.0;
+  }
+  return share_of(above / below, values);
+}
+
+enum status importance_pairs(const double *a, const double *b, const double *const mixed[],
+                             const double *const back[], int count, int parameters, uint64_t seed,
+                             struct share pair[], struct error *error) {
+  size_t n = (size_t)count;
+  int *draws = malloc(REPEATS * n * sizeof *draws);
+  double *term = malloc(2 * n * sizeof *term), *square = term ? term + n : NULL;
+  double *values = malloc(REPEATS * sizeof *values), mean = 0.0;
+  uint64_t random = random_mix(seed);
+  enum status status = STATUS_OK;
+  if (!draws || !term || !values) {
+    status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the indices");
+    goto done;
+  }
+  for (size_t j = 0; j < REPEATS * n; j++) {
+    draws[j] = (int)random_below(&random, n);
+  }
+  for (int j = 0; j < count; j++) {
+    mean += (a[j] + b[j]) / (2.0 * count);
+  }
+  for (int j = 0; j < count; j++) {
+    square[j] = 0.5 * (pow(a[j] - mean, 2) + pow(b[j] - mean, 2));
+  }
+  for (int i = 0; i < parameters; i++) {
+    pair[i * parameters + i] = (struct share){0.0, 0.0, 0.0};
+    for (int k = 0; k < i; k++) {
+      pair_terms(a, b, mixed, back, count, i, k, mean, term);
+      pair[i * parameters + k] = pair[k * parameters + i] =
+          ratio_share(term, square, count, draws, values);
+    }
+  }
+done:
+  free(draws);
+  free(term);
+  free(values);
+  return status;
+}
+
 /* ---- correlation -------------------------------------------------------------------------- */
 
 static double correlate(const double *x, const double *y, size_t count) {

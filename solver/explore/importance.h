@@ -24,6 +24,15 @@ enum status importance_sobol(const double *a, const double *b, const double *con
                              int count, int parameters, uint64_t seed,
                              struct importance importance[], struct error *error);
 
+/* The share of the variance that is of each pair of parameters together and of neither alone, by
+ * the estimator of Saltelli (2002, theorem 2): as importance_sobol, with back[i][count] at the
+ * points of the second set whose parameter i comes from the first. Fills
+ * pair[parameters][parameters], symmetric, its diagonal 0. All 0 for a function that does not vary.
+ * The estimates scatter around 0 for pairs that do not interact. STATUS_NO_MEMORY. */
+enum status importance_pairs(const double *a, const double *b, const double *const mixed[],
+                             const double *const back[], int count, int parameters, uint64_t seed,
+                             struct share pair[], struct error *error);
+
 /* Correlation of x[count] and y[count] by value (Pearson) and by rank (Spearman 1904; equal values
  * share their mean rank); 0 where one of them does not vary. STATUS_NO_MEMORY. */
 enum status importance_correlation(const double *x, const double *y, int count, double *linear,

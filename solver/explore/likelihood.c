@@ -10,7 +10,7 @@
 
 #include "solver/explore/random.h"
 
-enum { STARTS = 4, ITERATIONS_MAX = 80 };
+enum { STARTS = 4, ITERATIONS_MAX = 80, REFINEMENTS_MAX = 20 };
 
 static const double length_low = 0.02, length_high = 50.0, noise_low = 1e-5, noise_high = 1.0;
 
@@ -66,7 +66,14 @@ double likelihood_predict(const struct covariance *covariance, const double *x, 
                           int parameters, const double *factor, const double *weights,
                           const double *point, double *variance) {
   double own = covariance->deviation * covariance->deviation, value = 0.0;
-  double *cross = malloc((size_t)count * sizeof *cross);
+  double *cross = variance ? malloc((size_t)count * sizeof *cross) : NULL;
+  if (!variance) {
+    for (int i = 0; i < count; i++) {
+      value += weights[i] * covariance_correlation(covariance, x + (size_t)i * (size_t)parameters,
+                                                   point, parameters, NULL);
+    }
+    return own * value;
+  }
   if (!cross) {
     *variance = NAN;
     return NAN;
@@ -208,7 +215,7 @@ static void slope_at(const gsl_vector *at, void *context, gsl_vector *slope) {
 }
 
 /* One search; `at` is where it starts and where it ends. Returns its value there. */
-static double descend(struct search *s, gsl_vector *at) {
+static double descend(struct search *s, gsl_vector *at, int iterations) {
   gsl_multimin_function_fdf function = {
       .f = value_at, .df = slope_at, .fdf = value_and_slope, .n = at->size, .params = s};
   gsl_multimin_fdfminimizer *minimizer =
@@ -219,7 +226,7 @@ static double descend(struct search *s, gsl_vector *at) {
     return GSL_POSINF;
   }
   gsl_multimin_fdfminimizer_set(minimizer, &function, at, 0.3, 0.1);
-  for (int i = 0; i < ITERATIONS_MAX; i++) {
+  for (int i = 0; i < iterations; i++) {
     if (gsl_multimin_fdfminimizer_iterate(minimizer) != GSL_SUCCESS ||
         gsl_multimin_test_gradient(minimizer->gradient, 1e-3) == GSL_SUCCESS) {
       break;
@@ -233,19 +240,40 @@ static double descend(struct search *s, gsl_vector *at) {
   return value;
 }
 
+static bool open_search(struct search *s, gsl_vector **at) {
+  size_t n = (size_t)s->count;
+  *at = gsl_vector_alloc((size_t)s->parameters + 1);
+  s->matrix = malloc(n * n * sizeof *s->matrix);
+  s->weights = malloc(n * sizeof *s->weights);
+  return *at && s->matrix && s->weights;
+}
+
+static void close_search(struct search *s, gsl_vector *at) {
+  gsl_vector_free(at);
+  free(s->matrix);
+  free(s->weights);
+}
+
+/* The covariance at a place of the search, if there is one. */
+static bool take_covariance(struct search *s, const gsl_vector *at, struct covariance *covariance) {
+  double variance = 1.0;
+  if (!isfinite(profile(s, at, &variance))) {
+    return false;
+  }
+  *covariance = unpack(s, at);
+  covariance->deviation = sqrt(variance);
+  covariance->noise *= covariance->deviation;
+  return true;
+}
+
 enum status likelihood_maximise(const double *x, const double *y, int count, int parameters,
                                 uint64_t random, struct covariance *covariance,
                                 struct error *error) {
-  size_t n = (size_t)count;
   struct search s = {.x = x, .y = y, .count = count, .parameters = parameters};
-  gsl_vector *at = gsl_vector_alloc((size_t)parameters + 1);
-  double least = GSL_POSINF, variance = 1.0;
-  s.matrix = malloc(n * n * sizeof *s.matrix);
-  s.weights = malloc(n * sizeof *s.weights);
-  if (!at || !s.matrix || !s.weights) {
-    gsl_vector_free(at);
-    free(s.matrix);
-    free(s.weights);
+  gsl_vector *at;
+  double least = GSL_POSINF;
+  if (!open_search(&s, &at)) {
+    close_search(&s, at);
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for a surrogate");
   }
   for (int start = 0; start < STARTS; start++) {
@@ -253,18 +281,32 @@ enum status likelihood_maximise(const double *x, const double *y, int count, int
       gsl_vector_set(at, (size_t)k, log(start == 0 ? 1.0 : 0.2 + 3.0 * random_uniform(&random)));
     }
     gsl_vector_set(at, (size_t)parameters, log(start % 2 == 0 ? 1e-3 : 1e-1));
-    double value = descend(&s, at);
-    if (value < least && isfinite(profile(&s, at, &variance))) {
+    double value = descend(&s, at, ITERATIONS_MAX);
+    if (value < least && take_covariance(&s, at, covariance)) {
       least = value;
-      *covariance = unpack(&s, at);
-      covariance->deviation = sqrt(variance);
-      covariance->noise *= covariance->deviation;
     }
   }
-  gsl_vector_free(at);
-  free(s.matrix);
-  free(s.weights);
+  close_search(&s, at);
   return isfinite(least) ? STATUS_OK
                          : error_set(error, STATUS_DIVERGED, NULL,
                                      "no lengths give a covariance that can be factored");
+}
+
+enum status likelihood_refine(const double *x, const double *y, int count, int parameters,
+                              struct covariance *covariance, struct error *error) {
+  struct search s = {.x = x, .y = y, .count = count, .parameters = parameters};
+  gsl_vector *at;
+  if (!open_search(&s, &at)) {
+    close_search(&s, at);
+    return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for a surrogate");
+  }
+  for (int k = 0; k < parameters; k++) {
+    gsl_vector_set(at, (size_t)k, log(covariance->length[k]));
+  }
+  gsl_vector_set(at, (size_t)parameters, log(covariance->noise / covariance->deviation));
+  bool found = isfinite(descend(&s, at, REFINEMENTS_MAX)) && take_covariance(&s, at, covariance);
+  close_search(&s, at);
+  return found ? STATUS_OK
+               : error_set(error, STATUS_DIVERGED, NULL,
+                           "these lengths give a covariance that cannot be factored");
 }

@@ -13,6 +13,12 @@ enum status likelihood_maximise(const double *x, const double *y, int count, int
                                 uint64_t random, struct covariance *covariance,
                                 struct error *error);
 
+/* The same by one search of a few steps that starts from *covariance, as it was found from fewer
+ * points. STATUS_DIVERGED where no covariance can be factored there, STATUS_NO_MEMORY; then
+ * *covariance is as it was. */
+enum status likelihood_refine(const double *x, const double *y, int count, int parameters,
+                              struct covariance *covariance, struct error *error);
+
 /* Factors the covariance of the points: factor[count][count], its Cholesky factor, lower, by
  * rows; weights[count] = covariance^-1 (y - mean); *mean by generalised least squares; the
  * logarithm of the likelihood. false where it is not positive definite. */
@@ -20,7 +26,8 @@ bool likelihood_solve(const struct covariance *covariance, const double *x, cons
                       int count, int parameters, double *factor, double *weights, double *mean,
                       double *log_likelihood);
 
-/* What is expected above the mean at point[parameters], and its variance. NAN without memory. */
+/* What is expected above the mean at point[parameters], and, unless NULL, its variance. NAN without
+ * memory. */
 double likelihood_predict(const struct covariance *covariance, const double *x, int count,
                           int parameters, const double *factor, const double *weights,
                           const double *point, double *variance);

@@ -80,7 +80,8 @@ static void scale_values(struct surrogate *s, const double *y) {
 
 /* ---- fitting ------------------------------------------------------------------------------ */
 
-/* The lengths from SURROGATE_FIT_MAX points at most, drawn at random. */
+/* The lengths: where to search is found from SURROGATE_START_MAX points, the rest from
+ * SURROGATE_FIT_MAX at most, all drawn at random. */
 static enum status find_covariance(struct surrogate *s, uint64_t seed, struct error *error) {
   int used = s->count < SURROGATE_FIT_MAX ? s->count : SURROGATE_FIT_MAX;
   size_t width = (size_t)s->parameters;
@@ -94,11 +95,15 @@ static enum status find_covariance(struct surrogate *s, uint64_t seed, struct er
   }
   random_permutation(&random, s->count, order);
   for (int i = 0; i < used; i++) {
-    int from = used < s->count ? order[i] : i;
+    int from = s->count > SURROGATE_START_MAX ? order[i] : i;
     memcpy(x + (size_t)i * width, s->x + (size_t)from * width, width * sizeof *x);
     y[i] = s->y[from];
   }
-  status = likelihood_maximise(x, y, used, s->parameters, random, &s->covariance, error);
+  int first = used < SURROGATE_START_MAX ? used : SURROGATE_START_MAX;
+  status = likelihood_maximise(x, y, first, s->parameters, random, &s->covariance, error);
+  if (status == STATUS_OK && first < used) {
+    status = likelihood_refine(x, y, used, s->parameters, &s->covariance, error);
+  }
 done:
   free(order);
   free(x);
@@ -201,9 +206,11 @@ void surrogate_predict(const struct surrogate *s, const double x[], double *valu
     scaled[k] = (x[k] - s->low[k]) / s->range[k];
   }
   double known = likelihood_predict(&s->covariance, s->x, s->count, s->parameters, s->factor,
-                                    s->weights, scaled, &variance);
+                                    s->weights, scaled, deviation ? &variance : NULL);
   *value = s->middle + s->spread * (s->mean + known);
-  *deviation = s->spread * sqrt(fmax(variance, 0.0));
+  if (deviation) {
+    *deviation = s->spread * sqrt(fmax(variance, 0.0));
+  }
 }
 
 void surrogate_leave_one_out(const struct surrogate *s, double value[], double deviation[]) {

@@ -13,7 +13,8 @@
 enum {
   SURROGATE_PARAMETERS_MAX = 32,
   SURROGATE_POINTS_MAX = 4000, /* its matrix takes 128 MB then */
-  SURROGATE_FIT_MAX = 400      /* of which so many, evenly chosen, determine the lengths */
+  SURROGATE_FIT_MAX = 400,     /* of which so many, chosen at random, determine the lengths */
+  SURROGATE_START_MAX = 200    /* and so many where to search for them */
 };
 
 struct surrogate;
@@ -40,8 +41,8 @@ void surrogate_destroy(struct surrogate *surrogate);
 
 const struct surrogate_fit *surrogate_fit(const struct surrogate *surrogate);
 
-/* The value expected at x[parameters] and its standard deviation, of f alone, without the noise
- * (eq. 2.25 and 2.26). Time count^2. */
+/* The value expected at x[parameters] and, unless NULL, its standard deviation, of f alone, without
+ * the noise (eq. 2.25 and 2.26). Time count^2, without the deviation count. */
 void surrogate_predict(const struct surrogate *surrogate, const double x[], double *value,
                        double *deviation);
 

@@ -59,6 +59,42 @@ static void evaluate(double (*function)(const double *), int parameters, uint64_
   }
 }
 
+/* Second-order indices, pair[parameters][parameters]. */
+static void evaluate_pairs(double (*function)(const double *), int parameters, struct share *pair) {
+  struct sequence *s;
+  struct error error;
+  double *a = malloc(POINTS * sizeof *a), *b = malloc(POINTS * sizeof *b);
+  double *mixed[INPUTS_MAX], *back[INPUTS_MAX], x[2 * INPUTS_MAX];
+  for (int i = 0; i < parameters; i++) {
+    mixed[i] = malloc(POINTS * sizeof *mixed[i]);
+    back[i] = malloc(POINTS * sizeof *back[i]);
+  }
+  ck_assert(sequence_create(SEQUENCE_SOBOL, 2 * parameters, true, 1, &s, &error) == STATUS_OK);
+  for (int j = 0; j < POINTS; j++) {
+    sequence_next(s, x);
+    a[j] = function(x);
+    b[j] = function(x + parameters);
+    for (int i = 0; i < parameters; i++) {
+      double first = x[i], second = x[parameters + i];
+      x[i] = second;
+      mixed[i][j] = function(x);
+      x[i] = first;
+      x[parameters + i] = first;
+      back[i][j] = function(x + parameters);
+      x[parameters + i] = second;
+    }
+  }
+  ck_assert(importance_pairs(a, b, (const double *const *)mixed, (const double *const *)back,
+                             POINTS, parameters, 1, pair, &error) == STATUS_OK);
+  sequence_destroy(s);
+  free(a);
+  free(b);
+  for (int i = 0; i < parameters; i++) {
+    free(mixed[i]);
+    free(back[i]);
+  }
+}
+
 static void check_share(const struct share *share, double wanted) {
   ck_assert_double_eq_tol(share->value, wanted, 0.01);
   ck_assert(share->low <= share->value && share->value <= share->high);
@@ -78,6 +114,31 @@ START_TEST(indices_of_the_ishigami_function) {
   check_share(&importance[0].total, (one + both) / all);
   check_share(&importance[1].total, two / all);
   check_share(&importance[2].total, both / all);
+}
+END_TEST
+
+/* Of the Ishigami function only the first and the third interact. Of Sobol's G function those of a
+ * pair have the product of their own variances. */
+START_TEST(interactions_of_pairs) {
+  struct share pair[INPUTS_MAX * INPUTS_MAX];
+  double p4 = pow(M_PI, 4), both = 0.01 * p4 * p4 * (1.0 / 18 - 1.0 / 50);
+  double all = 0.5 * pow(1 + 0.1 * p4 / 5, 2) + 49.0 / 8 + both, product = 1;
+  evaluate_pairs(ishigami, 3, pair);
+  check_share(&pair[0 * 3 + 2], both / all);
+  check_share(&pair[2 * 3 + 0], both / all);
+  check_share(&pair[0 * 3 + 1], 0);
+  check_share(&pair[1 * 3 + 2], 0);
+  ck_assert(pair[0].value == 0);
+  evaluate_pairs(sobol_g, 8, pair);
+  for (int i = 0; i < 8; i++) {
+    product *= 1 + 1 / (3 * pow(1 + g_constant[i], 2));
+  }
+  for (int i = 0; i < 8; i++) {
+    for (int k = 0; k < i; k++) {
+      check_share(&pair[i * 8 + k], 1 / (3 * pow(1 + g_constant[i], 2)) /
+                                        (3 * pow(1 + g_constant[k], 2)) / (product - 1));
+    }
+  }
 }
 END_TEST
 
@@ -128,6 +189,7 @@ int main(void) {
   TCase *tcase = tcase_create("all");
   tcase_add_loop_test(tcase, indices_of_the_ishigami_function, 0, 2);
   tcase_add_test(tcase, indices_of_the_g_function);
+  tcase_add_test(tcase, interactions_of_pairs);
   tcase_add_test(tcase, a_constant_has_no_importance);
   tcase_add_test(tcase, correlations_are_as_published);
   tcase_set_timeout(tcase, 300);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "solver/explore/latin.h"
+#include "solver/explore/random.h"
 #include "solver/explore/sequence.h"
 #include "tests/unit/suite.h"
 
@@ -153,6 +154,55 @@ START_TEST(discrepancies_are_as_published) {
 }
 END_TEST
 
+/* The first points as they come, without scrambling: values of the reference manual of SciPy (1.16,
+ * scipy.stats.qmc.Sobol and .Halton, examples). */
+START_TEST(discrepancies_of_sequences_are_as_published) {
+  struct sequence *sobol = must_create(SEQUENCE_SOBOL, 2, false, 0);
+  struct sequence *halton = must_create(SEQUENCE_HALTON, 2, false, 0);
+  double x[16];
+  for (int i = 0; i < 8; i++) {
+    sequence_next(sobol, x + 2 * i);
+  }
+  ck_assert_double_eq_tol(latin_discrepancy(x, 8, 2), 0.013882107204860938, 1e-15);
+  for (int i = 0; i < 5; i++) {
+    sequence_next(halton, x + 2 * i);
+  }
+  ck_assert_double_eq_tol(latin_discrepancy(x, 5, 2), 0.088893711419753, 1e-14);
+  sequence_destroy(sobol);
+  sequence_destroy(halton);
+}
+END_TEST
+
+/* The mean over many designs: independent points ((5/4)^s - (13/12)^s) / n (Hickernell 1998, eq.
+ * 5.5), which scrambled points must undercut by far. */
+START_TEST(scrambled_points_are_more_even_than_random_ones) {
+  enum { COUNT = 128, DIMENSION = 4, SEEDS = 8 };
+  double x[COUNT * DIMENSION], mean[3] = {0, 0, 0};
+  double wanted = (pow(1.25, DIMENSION) - pow(13.0 / 12, DIMENSION)) / COUNT;
+  for (uint64_t seed = 1; seed <= SEEDS; seed++) {
+    struct sequence *s[2] = {must_create(SEQUENCE_SOBOL, DIMENSION, true, seed),
+                             must_create(SEQUENCE_HALTON, DIMENSION, true, seed)};
+    uint64_t random = seed;
+    for (int kind = 0; kind < 3; kind++) {
+      for (int i = 0; i < COUNT; i++) {
+        for (int k = 0; k < DIMENSION && kind == 2; k++) {
+          x[i * DIMENSION + k] = random_uniform(&random);
+        }
+        if (kind < 2) {
+          sequence_next(s[kind], x + i * DIMENSION);
+        }
+      }
+      mean[kind] += latin_discrepancy(x, COUNT, DIMENSION) / SEEDS;
+    }
+    sequence_destroy(s[0]);
+    sequence_destroy(s[1]);
+  }
+  ck_assert_double_eq_tol(mean[2], wanted, 0.3 * wanted);
+  ck_assert_double_lt(mean[0], wanted / 10);
+  ck_assert_double_lt(mean[1], wanted / 5);
+}
+END_TEST
+
 static void must_be_latin(const double *x, int count, int dimension) {
   for (int k = 0; k < dimension; k++) {
     for (int cell = 0; cell < count; cell++) {
@@ -202,6 +252,8 @@ int main(void) {
   tcase_add_loop_test(sequences, more_points_keep_the_first_and_seeds_differ, 0, 2);
   tcase_add_test(sequences, too_many_dimensions_are_refused);
   tcase_add_test(hypercubes, discrepancies_are_as_published);
+  tcase_add_test(hypercubes, discrepancies_of_sequences_are_as_published);
+  tcase_add_test(hypercubes, scrambled_points_are_more_even_than_random_ones);
   tcase_add_loop_test(hypercubes, hypercubes_are_latin_and_even, 0, 5);
   tcase_set_timeout(hypercubes, 300);
   suite_add_tcase(suite, sequences);
