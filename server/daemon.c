@@ -27,6 +27,7 @@
 #include "server/maintenance.h"
 #include "server/store/store.h"
 #include "server/study/conductor.h"
+#include "server/study/model.h"
 #include "server/study/tables.h"
 #include "solver/job/spec.h"
 
@@ -108,6 +109,9 @@ static enum status parts_open_store(const struct options *options, struct parts 
     status = tables_create(service->store, &service->tables, error);
   }
   if (status == STATUS_OK) {
+    status = models_create(&service->models, error);
+  }
+  if (status == STATUS_OK) {
     status = feed_create(service->store, options->subscribers, &service->feed, error);
   }
   if (recovered > 0) {
@@ -184,6 +188,7 @@ static void parts_close(struct parts *parts) {
   feed_destroy(parts->service.feed);
   http_meter_destroy(parts->service.meter);
   tables_destroy(parts->service.tables);
+  models_destroy(parts->service.models);
   answers_destroy(parts->service.answers);
   isolation_release(&parts->isolation);
   janitor_destroy(parts->janitor);

@@ -31,6 +31,10 @@ handler plot_job, plot_overlay;
 /* compare.c */
 handler compare_show;
 
+/* study_analysis.c, study_search.c, study_export.c: what the members of a study say together */
+handler study_ranking, study_pareto, study_importance, study_effects, study_surrogate, study_slice,
+    study_search, study_confirm, study_export;
+
 /* catalogue.c: what the program knows by itself */
 handler catalogue_materials, catalogue_schema, catalogue_openapi_json, catalogue_openapi_yaml;
 

@@ -10,12 +10,11 @@
 
 enum { KEY_MAX = 200, LIST_LIMIT = 50, LIST_LIMIT_MAX = 500 };
 
-/* Reads the request's job document; otherwise replies why not and returns false. */
-static bool body_read(const struct request *request, struct reply *reply,
-                      struct job_document *document) {
+/* Reads a job document; otherwise replies why not and returns false. */
+static bool text_read(const struct request *request, struct reply *reply, const char *text,
+                      size_t size, struct job_document *document) {
   struct error error = {.status = STATUS_OK};
-  const char *text = request->body ? request->body : "";
-  if (document_read(request, text, request->body_size, document, &error) == STATUS_OK) {
+  if (document_read(request, text, size, document, &error) == STATUS_OK) {
     return true;
   }
   reply_error(reply, &error);
@@ -44,7 +43,7 @@ static bool job_answered(const struct service *service, int64_t id) {
   return answered;
 }
 
-void jobs_submit(struct request *request, struct reply *reply) {
+void submission_take(struct request *request, struct reply *reply, const char *text, size_t size) {
   struct service *service = request->service;
   struct job_document document;
   struct error error;
@@ -55,7 +54,7 @@ void jobs_submit(struct request *request, struct reply *reply) {
     reply_problem(reply, 503, "shutting_down", "The server is shutting down; try again later.");
     return;
   }
-  if (!key_read(request, reply, &key) || !body_read(request, reply, &document)) {
+  if (!key_read(request, reply, &key) || !text_read(request, reply, text, size, &document)) {
     return;
   }
   document.submission.idempotency_key = key;
@@ -83,9 +82,14 @@ void jobs_submit(struct request *request, struct reply *reply) {
   job_view_reply_waiting(request, reply, answered ? 200 : 202, id, true);
 }
 
+void jobs_submit(struct request *request, struct reply *reply) {
+  submission_take(request, reply, request->body ? request->body : "", request->body_size);
+}
+
 void jobs_validate(struct request *request, struct reply *reply) {
   struct job_document document;
-  if (body_read(request, reply, &document)) {
+  if (text_read(request, reply, request->body ? request->body : "", request->body_size,
+                &document)) {
     reply_json(reply, 200,
                json_pack("{s:b, s:s, s:s}", "valid", 1, "kind",
                          json_string_value(json_object_get(document.root, "kind")), "spec_hash",

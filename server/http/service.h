@@ -25,6 +25,7 @@ struct connections;
 struct http_meter;
 struct isolation;
 struct job_reader;
+struct models;
 struct snapshots;
 struct tables;
 struct waiters;
@@ -42,6 +43,7 @@ struct service {
   struct feed *feed;                 /* the stream of events */
   struct answers *answers;           /* kept answers */
   struct tables *tables;             /* kept tables of studies */
+  struct models *models;             /* surrogates of studies */
   struct access *access;             /* who may come in */
   struct job_reader *reader;         /* checks job documents */
   const char *data;                  /* data directory */

@@ -21,4 +21,8 @@ enum status document_read(const struct request *request, const char *text, size_
 
 void document_release(struct job_document *document);
 
+/* Stores the job document in `text` for the request and replies as to a submission, also when it is
+ * refused. */
+void submission_take(struct request *request, struct reply *reply, const char *text, size_t size);
+
 #endif

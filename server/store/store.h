@@ -226,6 +226,11 @@ enum status store_artifact(struct store *store, int64_t id, const char *name, st
 /* The attempts of a job: array of objects. The caller owns *attempts. */
 enum status store_attempts(struct store *store, int64_t id, json_t **attempts, struct error *error);
 
+/* The newest job of that spec hash that succeeded, else the newest one; *id is 0 when there is none.
+ */
+enum status store_equal_job(struct store *store, const char *spec_hash, int64_t *id,
+                            struct error *error);
+
 /* The design parameters of a job: object pointer -> { value, text, unit }. */
 enum status store_parameters(struct store *store, int64_t id, json_t **parameters,
                              struct error *error);
