@@ -73,7 +73,7 @@ function* operationProblems(exchange, operation, values) {
   seen.add(pointer);
   yield* contract.answerProblems(pointer, exchange.method, exchange.answer);
   if (status < 400) {
-    query.forEach((_, name) => seen.add(`${operation.name} ?${name.replace(/^label\..*/, "label.NAME")}`));
+    query.forEach((_, name) => seen.add(`${operation.name} ?${name.replace(/^label\..*/, "label.NAME").replace(/^at\..*/, "at.POINTER")}`));
     yield* contract.requestProblems(operation, values, query, exchange);
   } else if (exchange.method !== "HEAD" && exchange.answer.whole) {
     const problem = JSON.parse(exchange.answer.body.toString("utf8"));
