@@ -17,7 +17,15 @@ sqlite3 "$DATA/pneulab.db" <<END
 INSERT INTO job (id, state, kind, name, document, spec_hash, created_ms, finished_ms)
   VALUES (100, 'succeeded', 'study', 'walls', '$study', 'study', 1769860800000, 1769860900000),
          (300, 'succeeded', 'study', 'no members', '$study', 'other', 1769860800000, 1769860900000);
-INSERT INTO study VALUES (100, 'sobol', 60, 0, 1), (300, 'sobol', 0, 0, 1);
+INSERT INTO study VALUES (100, 'sobol', 60, 0, 1), (300, 'sobol', 0, 0, 1), (310, 'list', 2, 0, 1);
+INSERT INTO job (id, state, kind, name, document, spec_hash, attempt, created_ms, study_id, member) VALUES
+  (310, 'succeeded', 'study', 'ranked', '{}', 'ranked', 1, 1769860800000, NULL, NULL),
+  (311, 'succeeded', 'response', 'thick', '{}', 'thick', 0, 1769860800000, 310, 0),
+  (312, 'succeeded', 'response', 'thin', '{}', 'thin', 0, 1769860800000, 310, 1);
+INSERT INTO attempt (job_id, number, created_ms) VALUES (310, 1, 1769860800000);
+INSERT INTO result VALUES (310, 1, '{ "ranking": { "mean_weight": 0.7, "designs": [
+  { "rank": 1, "member": 1, "name": "thin", "mean_weighted": 0.8, "normalised_variance": 0.25, "final": 0.785 },
+  { "rank": 2, "member": 0, "name": "thick", "mean_weighted": 0.1, "normalised_variance": 1, "final": 0.07 } ] } }', 'attempts/310-1', 1769860800000);
 INSERT INTO study_parameter VALUES (100, 0, '/actuator/side_wall', 'side wall', 'mm', 0, 0, 1.5, 2.5),
   (100, 1, '/actuator/chambers/0/count', 'chambers', '', 0, 0, 10, 12),
   (100, 2, '/material', 'material', '', 1, 0, NULL, NULL);
@@ -56,7 +64,10 @@ check "the order is that of the formula" "$(sql "WITH v AS ($values) SELECT grou
 check "failed members are counted" '[57,3,0.75]' "$(field '[.compared, .excluded, .criteria[0].weight]')"
 check "titles and units" '["Mass","g","min"]' "$(field '.criteria[1] | [.title, .unit, .direction]')"
 fetch GET "$at/ranking?preset=taper"
-check "a study that asked for no ranking has none" '409' "$CODE"
+check "the ranking of its document is there when a study has ended" '409 conflict' "$CODE $(field .code)"
+fetch GET '/api/v1/studies/310/ranking?preset=taper'
+check "the formula of the paper" '["taper",[312,311],[0.785,0.07],[0.8,0.75],0.7]' \
+  "$(field '[.preset, [.designs[].job], [.designs[].score], .designs[0].parts, .criteria[0].weight]')"
 
 # ---- fronts
 fetch GET "$at/pareto?objectives=max:bending_angle_deg,min:mass_g&layers=2"

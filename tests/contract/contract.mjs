@@ -55,7 +55,7 @@ export class Contract {
   // A text of a URL or a header by a schema: as the number that it may stand for, too.
   wrongText(pointer, text) {
     const wrong = this.wrong(pointer, text);
-    return wrong && /^-?[0-9]+$/.test(text) ? this.wrong(pointer, Number(text)) : wrong;
+    return wrong && /^-?[0-9]+(\.[0-9]+)?$/.test(text) ? this.wrong(pointer, Number(text)) : wrong;
   }
 
   // { path, values } of the template that a path fits, or null.

@@ -73,7 +73,7 @@ function* operationProblems(exchange, operation, values) {
   seen.add(pointer);
   yield* contract.answerProblems(pointer, exchange.method, exchange.answer);
   if (status < 400) {
-    query.forEach((_, name) => seen.add(`${operation.name} ?${name.replace(/^label\..*/, "label.NAME").replace(/^at\..*/, "at.POINTER")}`));
+    query.forEach((_, name) => seen.add(`${operation.name} ?${name.replace(/^(label|at)\..*/, "$1.NAME")}`));
     yield* contract.requestProblems(operation, values, query, exchange);
   } else if (exchange.method !== "HEAD" && exchange.answer.whole) {
     const problem = JSON.parse(exchange.answer.body.toString("utf8"));
