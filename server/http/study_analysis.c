@@ -47,7 +47,7 @@ void study_ranking(struct request *request, struct reply *reply) {
                   preset);
     return;
   }
-  struct study_table *table = study_table_open(request, reply);
+  const struct study_table *table = study_table_open(request, reply);
   if (!table) {
     return;
   }
@@ -61,7 +61,7 @@ void study_ranking(struct request *request, struct reply *reply) {
     }
   }
   study_reply(reply, status, answer, &error);
-  study_table_close(table);
+  study_table_close(request, table);
 }
 
 void study_pareto(struct request *request, struct reply *reply) {
@@ -73,7 +73,7 @@ void study_pareto(struct request *request, struct reply *reply) {
   if (!request_query_integer(request, reply, "layers", 1, ANALYSIS_LAYERS_MAX, LAYERS, &layers)) {
     return;
   }
-  struct study_table *table = study_table_open(request, reply);
+  const struct study_table *table = study_table_open(request, reply);
   if (!table) {
     return;
   }
@@ -83,7 +83,7 @@ void study_pareto(struct request *request, struct reply *reply) {
     status = analysis_pareto(table, objectives, count, (int)layers, &answer, &error);
   }
   study_reply(reply, status, answer, &error);
-  study_table_close(table);
+  study_table_close(request, table);
 }
 
 /* ---- by a surrogate ------------------------------------------------------------------------ */
@@ -97,7 +97,7 @@ static void reply_by_model(struct request *request, struct reply *reply, analysi
   struct model *model = NULL;
   json_t *answer = NULL;
   size_t metric;
-  struct study_table *table = study_table_open(request, reply);
+  const struct study_table *table = study_table_open(request, reply);
   if (!table) {
     return;
   }
@@ -110,7 +110,7 @@ static void reply_by_model(struct request *request, struct reply *reply, analysi
   }
   study_reply(reply, status, answer, &error);
   model_release(model);
-  study_table_close(table);
+  study_table_close(request, table);
 }
 
 void study_importance(struct request *request, struct reply *reply) {
@@ -205,7 +205,7 @@ void study_slice(struct request *request, struct reply *reply) {
                              &resolution)) {
     return;
   }
-  struct study_table *table = study_table_open(request, reply);
+  const struct study_table *table = study_table_open(request, reply);
   if (!table) {
     return;
   }
@@ -219,5 +219,5 @@ void study_slice(struct request *request, struct reply *reply) {
   }
   study_reply(reply, status, answer, &error);
   model_release(model);
-  study_table_close(table);
+  study_table_close(request, table);
 }

@@ -34,7 +34,7 @@ void study_export(struct request *request, struct reply *reply) {
                   format ? format : "table");
     return;
   }
-  struct study_table *table = study_table_open(request, reply);
+  const struct study_table *table = study_table_open(request, reply);
   if (!table) {
     return;
   }
@@ -54,5 +54,5 @@ void study_export(struct request *request, struct reply *reply) {
   } else {
     study_reply(reply, status, NULL, &error);
   }
-  study_table_close(table);
+  study_table_close(request, table);
 }

@@ -56,7 +56,7 @@ void study_search(struct request *request, struct reply *reply) {
       !read_chance(request, reply, &query.chance)) {
     return;
   }
-  struct study_table *table = study_table_open(request, reply);
+  const struct study_table *table = study_table_open(request, reply);
   if (!table) {
     return;
   }
@@ -74,7 +74,7 @@ void study_search(struct request *request, struct reply *reply) {
   }
   study_reply(reply, status, answer, &error);
   json_decref(document);
-  study_table_close(table);
+  study_table_close(request, table);
 }
 
 /* ---- confirm ------------------------------------------------------------------------------- */
@@ -142,12 +142,12 @@ static char *confirming_job(const struct request *request, const struct study_ta
 
 void study_confirm(struct request *request, struct reply *reply) {
   struct error error = {.status = STATUS_OK};
-  struct study_table *table = study_table_open(request, reply);
+  const struct study_table *table = study_table_open(request, reply);
   if (!table) {
     return;
   }
   char *text = confirming_job(request, table, &error);
-  study_table_close(table);
+  study_table_close(request, table);
   if (text) {
     submission_take(request, reply, text, strlen(text));
   } else {

@@ -3,24 +3,25 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "server/study/tables.h"
 #include "solver/job/json.h"
 
-struct study_table *study_table_open(const struct request *request, struct reply *reply) {
-  struct study_table *table;
+const struct study_table *study_table_open(const struct request *request, struct reply *reply) {
+  const struct study_table *table;
   struct error error = {.status = STATUS_OK};
   int64_t id;
   if (!request_id(request, reply, &id)) {
     return NULL;
   }
-  if (study_table_read(request->service->store, id, &table, &error) != STATUS_OK) {
+  if (tables_use(request->service->tables, id, &table, NULL, &error) != STATUS_OK) {
     reply_error(reply, &error);
     return NULL;
   }
   return table;
 }
 
-void study_table_close(struct study_table *table) {
-  study_table_destroy(table);
+void study_table_close(const struct request *request, const struct study_table *table) {
+  tables_release(request->service->tables, table);
 }
 
 void study_reply(struct reply *reply, enum status status, json_t *answer,

@@ -7,8 +7,8 @@
 
 /* The study that the request names; otherwise replies 404 or why it cannot be read and returns
  * NULL. The caller ends with study_table_close. */
-struct study_table *study_table_open(const struct request *request, struct reply *reply);
-void study_table_close(struct study_table *table);
+const struct study_table *study_table_open(const struct request *request, struct reply *reply);
+void study_table_close(const struct request *request, const struct study_table *table);
 
 /* Replies with an answer, whose reference is taken over, or with the failure: STATUS_INVALID is a
  * query that cannot be answered, 400. */
