@@ -112,10 +112,15 @@ BEGIN
   SELECT RAISE(ABORT, 'a member of a study that has not ended cannot be deleted');
 END;
 
-CREATE TRIGGER job_delete_study BEFORE DELETE ON job WHEN OLD.kind = 'study'
-  AND EXISTS (SELECT 1 FROM job WHERE study_id = OLD.id)
+-- The members of a deleted study go after it, a few at a time.
+CREATE TABLE study_deleted (
+  study_id INTEGER PRIMARY KEY        -- no reference: the study is gone
+);
+
+CREATE TRIGGER job_delete_study AFTER DELETE ON job WHEN OLD.kind = 'study'
 BEGIN
-  SELECT RAISE(ABORT, 'the members of a study are deleted before it');
+  INSERT INTO study_deleted (study_id) SELECT OLD.id
+    WHERE EXISTS (SELECT 1 FROM job WHERE study_id = OLD.id);
 END;
 
 -- ---- studies ------------------------------------------------------------------------------

@@ -142,6 +142,7 @@ static enum status parts_open(const struct options *options, struct parts *parts
   }
   if (status == STATUS_OK) {
     struct conductor_settings settings = {.store = service->store,
+                                          .data = options->data,
                                           .disk = service->disk,
                                           .reader = service->reader,
                                           .changed = job_changed,

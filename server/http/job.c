@@ -1,19 +1,14 @@
 #include <stdlib.h>
 
-#include <string.h>
-
 #include "server/exec/janitor.h"
 #include "server/http/cache.h"
 #include "server/http/handlers.h"
 #include "server/http/job_view.h"
 #include "server/http/waiters.h"
 #include "server/store/retention.h"
-#include "server/store/study.h"
 #include "server/study/conductor.h"
 #include "solver/job/json.h"
 #include "solver/job/spec.h"
-
-enum { DELETE_MAX = 100 };
 
 void job_show(struct request *request, struct reply *reply) {
   int64_t id;
@@ -44,21 +39,6 @@ static void files_remove(const struct service *service, int64_t id, int64_t atte
   }
 }
 
-/* Deletes the members of a study, a few at a time so that nobody waits for all. What is cut off by
- * a crash goes on with the next request. */
-static enum status members_delete(const struct service *service, int64_t id, struct error *error) {
-  struct job_files files[DELETE_MAX];
-  size_t count;
-  enum status status;
-  do {
-    status = store_study_delete(service->store, id, files, DELETE_MAX, &count, error);
-    for (size_t i = 0; i < count && status == STATUS_OK; i++) {
-      files_remove(service, files[i].job_id, files[i].attempts);
-    }
-  } while (status == STATUS_OK && count > 0);
-  return status == STATUS_OK ? store_study_view_drop(service->store, id, error) : status;
-}
-
 void job_delete(struct request *request, struct reply *reply) {
   struct service *service = request->service;
   struct job_record record;
@@ -67,24 +47,18 @@ void job_delete(struct request *request, struct reply *reply) {
   if (!request_id(request, reply, &id)) {
     return;
   }
-  enum status status = store_job(service->store, id, &record, &error);
-  if (status != STATUS_OK) {
+  if (store_job(service->store, id, &record, &error) != STATUS_OK) {
     reply_error(reply, &error);
     return;
   }
   int64_t attempts = record.attempt;
-  if (strcmp(record.kind, "study") == 0) {
-    status = members_delete(service, id, &error);
-  }
   job_record_clear(&record);
-  if (status == STATUS_OK) {
-    status = store_delete(service->store, id, &error);
-  }
-  if (status != STATUS_OK) {
+  if (store_delete(service->store, id, &error) != STATUS_OK) {
     reply_error(reply, &error);
     return;
   }
   files_remove(service, id, attempts);
+  conductor_wake(service->conductor);
   reply->status = 204;
 }
 

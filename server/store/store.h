@@ -72,8 +72,8 @@ enum status store_submit(struct store *store, const struct submission *submissio
                          bool *replayed, struct error *error);
 
 /* Removes a terminal job with its attempts and results. STATUS_NOT_FOUND, or STATUS_CONFLICT
- * while the job, or the study that it is a member of, is not terminal, or while a study still has
- * members (store_study_delete). Its files are the caller's to remove. */
+ * while the job, or the study that it is a member of, is not terminal. The members of a study are
+ * deleted after it (store_study_delete). Its files are the caller's to remove. */
 enum status store_delete(struct store *store, int64_t id, struct error *error);
 
 /* Asks for the end of a job: one that waits becomes cancelled, one that runs, and a study with

@@ -317,32 +317,59 @@ enum status store_study_cancelled(struct store *store, int64_t id, struct error 
   return store_write_end(store, status, error);
 }
 
-enum status store_study_delete(struct store *store, int64_t id, struct job_files *files,
-                               size_t room, size_t *count, struct error *error) {
+/* The study whose members go next, 0 for none. */
+static enum status deleted_find(sqlite3 *db, int64_t *id, struct error *error) {
   sqlite3_stmt *statement;
-  enum job_state state;
   int row = 0;
+  enum status status =
+      sql_prepare(db, &statement, error, "SELECT study_id FROM study_deleted LIMIT 1", "");
+  if (status == STATUS_OK) {
+    status = sql_step(statement, &row, error);
+  }
+  *id = status == STATUS_OK && row ? sqlite3_column_int64(statement, 0) : 0;
+  sql_done(statement);
+  return status;
+}
+
+/* Lists members of a deleted study; without any it is forgotten, with its view. */
+static enum status deleted_members(sqlite3 *db, int64_t id, struct job_files *files, size_t room,
+                                   size_t *count, struct error *error) {
+  sqlite3_stmt *statement;
+  int row = 0;
+  enum status status =
+      sql_prepare(db, &statement, error, "SELECT id, attempt FROM job WHERE study_id = ? LIMIT ?",
+                  "ii", id, (int64_t)room);
+  while (status == STATUS_OK && (status = sql_step(statement, &row, error)) == STATUS_OK && row) {
+    files[(*count)++] = (struct job_files){.job_id = sqlite3_column_int64(statement, 0),
+                                           .attempts = sqlite3_column_int64(statement, 1)};
+  }
+  sql_done(statement);
+  if (status == STATUS_OK && *count == 0) {
+    status = study_view_drop(db, id, error);
+  }
+  return status == STATUS_OK && *count == 0
+             ? sql_run(db, error, "DELETE FROM study_deleted WHERE study_id = ?", "i", id)
+             : status;
+}
+
+enum status store_study_delete(struct store *store, struct job_files *files, size_t room,
+                               size_t *count, struct error *error) {
+  int64_t id = 0;
   *count = 0;
-  enum status status = store_write_begin(store, error);
+  sqlite3 *reader = store_read_begin(store, error);
+  if (!reader) {
+    return STATUS_IO;
+  }
+  enum status status = deleted_find(reader, &id, error);
+  store_read_end(store, reader);
+  if (status != STATUS_OK || id == 0) {
+    return status;
+  }
+  status = store_write_begin(store, error);
   if (status != STATUS_OK) {
     return status;
   }
-  status = store_state_of(store->writer, id, &state, error);
-  if (status == STATUS_OK && !job_state_terminal(state)) {
-    status = study_live(id, state, error);
-  }
-  if (status == STATUS_OK) {
-    status = sql_prepare(store->writer, &statement, error,
-                         "SELECT id, attempt FROM job WHERE study_id = ? LIMIT ?", "ii", id,
-                         (int64_t)room);
-  }
-  if (status == STATUS_OK) {
-    while ((status = sql_step(statement, &row, error)) == STATUS_OK && row) {
-      files[(*count)++] = (struct job_files){.job_id = sqlite3_column_int64(statement, 0),
-                                             .attempts = sqlite3_column_int64(statement, 1)};
-    }
-    sql_done(statement);
-  }
+  status = deleted_members(store->writer, id, files, room, count, error);
   for (size_t i = 0; i < *count && status == STATUS_OK; i++) {
     status = job_rows_delete(store->writer, files[i].job_id, error);
   }

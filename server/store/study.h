@@ -122,17 +122,14 @@ enum status store_study_running(struct store *store, int64_t id, int64_t *ids, s
  * with nothing written, otherwise. */
 enum status store_study_cancelled(struct store *store, int64_t id, struct error *error);
 
-/* Deletes up to `room` members of a terminal study and lists their files. STATUS_CONFLICT when the
- * study has not ended. */
-enum status store_study_delete(struct store *store, int64_t id, struct job_files *files,
-                               size_t room, size_t *count, struct error *error);
+/* Deletes up to `room` members of studies that were deleted, and lists their files, which are the
+ * caller's to remove. *count is 0 when there are none left. */
+enum status store_study_delete(struct store *store, struct job_files *files, size_t room,
+                               size_t *count, struct error *error);
 
 /* Makes, or makes anew, the view study_ID: a row a member with its parameters and metrics as
  * columns. Of the oldest studies the views go when there are more than STUDY_VIEWS_MAX. */
 enum { STUDY_VIEWS_MAX = 100 };
 enum status store_study_view(struct store *store, int64_t id, struct error *error);
-
-/* Drops it, if there is one. */
-enum status store_study_view_drop(struct store *store, int64_t id, struct error *error);
 
 #endif

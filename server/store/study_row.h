@@ -12,6 +12,9 @@ enum status study_live(int64_t id, enum job_state state, struct error *error);
 /* Deletes a terminal job with its result. In a write transaction. */
 enum status job_rows_delete(sqlite3 *db, int64_t id, struct error *error);
 
+/* Drops the view of a study, if there is one. In a write transaction. */
+enum status study_view_drop(sqlite3 *db, int64_t id, struct error *error);
+
 /* Whose job it is: of a member the study and its state, else *study_id is 0; *study: the job is one
  * itself. STATUS_NOT_FOUND. */
 enum status study_of(sqlite3 *db, int64_t id, bool *study, int64_t *study_id,

@@ -8,6 +8,7 @@
 #include "server/store/connection.h"
 #include "server/store/sql.h"
 #include "server/store/study.h"
+#include "server/store/study_row.h"
 
 enum { NAME_SIZE = 100, COLUMNS_MAX = 500 };
 
@@ -102,7 +103,7 @@ static enum status view_compose(struct view *view, struct error *error) {
   return status;
 }
 
-static enum status view_drop(sqlite3 *db, int64_t id, struct error *error) {
+enum status study_view_drop(sqlite3 *db, int64_t id, struct error *error) {
   char sql[80];
   snprintf(sql, sizeof sql, "DROP VIEW IF EXISTS study_%lld", (long long)id);
   return sqlite3_exec(db, sql, NULL, NULL, NULL) == SQLITE_OK ? STATUS_OK : sql_fail(db, error);
@@ -125,7 +126,7 @@ static enum status views_limit(sqlite3 *db, struct error *error) {
     oldest = sqlite3_column_int64(statement, 0);
   }
   sql_done(statement);
-  return status == STATUS_OK && oldest != 0 ? view_drop(db, oldest, error) : status;
+  return status == STATUS_OK && oldest != 0 ? study_view_drop(db, oldest, error) : status;
 }
 
 enum status store_study_view(struct store *store, int64_t id, struct error *error) {
@@ -135,7 +136,7 @@ enum status store_study_view(struct store *store, int64_t id, struct error *erro
   }
   struct view view = {.db = store->writer, .id = id, .sql = sqlite3_str_new(store->writer)};
   view.name = calloc(COLUMNS_MAX + 1, sizeof *view.name);
-  status = view.name ? view_drop(view.db, id, error)
+  status = view.name ? study_view_drop(view.db, id, error)
                      : error_set(error, STATUS_NO_MEMORY, NULL, "No memory for a view.");
   if (status == STATUS_OK) {
     status = view_compose(&view, error);
@@ -150,10 +151,4 @@ enum status store_study_view(struct store *store, int64_t id, struct error *erro
   sqlite3_free(sql);
   free(view.name);
   return store_write_end(store, status, error);
-}
-
-enum status store_study_view_drop(struct store *store, int64_t id, struct error *error) {
-  enum status status = store_write_begin(store, error);
-  return status == STATUS_OK ? store_write_end(store, view_drop(store->writer, id, error), error)
-                             : status;
 }

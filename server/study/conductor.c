@@ -5,15 +5,16 @@
 
 #include "server/base/clock.h"
 #include "server/base/log.h"
+#include "server/exec/janitor.h"
 #include "server/exec/tally.h"
 #include "server/study/work.h"
 
 /* Between two looks at the studies, and when nothing was heard of any job. */
 enum { PACE_MS = 50, IDLE_MS = 1000 };
 
-/* Studies of one submitter that run at a time; members that follow in one transaction; members that
- * may be with workers. */
-enum { STUDIES_MAX = 4, FOLLOW_MAX = 200, RUNNING_MAX = 1024 };
+/* Studies of one submitter that run at a time; members that follow, and that are deleted, in one
+ * transaction; members that may be with workers. */
+enum { STUDIES_MAX = 4, FOLLOW_MAX = 200, DELETE_MAX = 50, RUNNING_MAX = 1024 };
 
 struct conductor {
   struct conductor_settings settings;
@@ -292,6 +293,27 @@ static bool step_run(struct conductor *conductor, const struct study_job *job) {
   return more;
 }
 
+/* Deletes members of studies that were deleted; true when there may be more. */
+static bool step_delete(struct conductor *conductor) {
+  const struct conductor_settings *settings = &conductor->settings;
+  struct job_files files[DELETE_MAX];
+  struct error error;
+  size_t count = 0;
+  bool kept = true;
+  if (store_study_delete(settings->store, files, DELETE_MAX, &count, &error) != STATUS_OK) {
+    log_event(LOG_LEVEL_ERROR, "cannot delete members", LOG_TEXT("error", error.message));
+    return false;
+  }
+  for (size_t i = 0; i < count; i++) {
+    if (store_files_kept(settings->store, files[i].job_id, files[i].attempts, &kept, NULL) ==
+            STATUS_OK &&
+        !kept) {
+      janitor_remove_files(settings->data, files[i].job_id, files[i].attempts);
+    }
+  }
+  return count > 0;
+}
+
 /* ---- all of them -------------------------------------------------------------------------- */
 
 /* Takes the next study; true when there was one. */
@@ -331,6 +353,7 @@ static bool look(struct conductor *conductor) {
   struct error error = {.status = STATUS_OK};
   size_t count = 0;
   bool more = begin_next(conductor);
+  more = step_delete(conductor) || more;
   if (store_studies_live(conductor->settings.store, &list, &count, &error) != STATUS_OK) {
     log_event(LOG_LEVEL_ERROR, "cannot read the studies", LOG_TEXT("error", error.message));
     return false;

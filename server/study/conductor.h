@@ -14,6 +14,7 @@ struct conductor;
 
 struct conductor_settings {
   struct store *store;
+  const char *data;                /* data directory; lives as long as the conductor */
   struct disk *disk;               /* nothing is stored while it is in trouble */
   const struct job_reader *reader; /* lives as long as the conductor */
   /* Called after changes of a job's state, from the conductor's thread. */

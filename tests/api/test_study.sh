@@ -91,7 +91,7 @@ check "its members have ended with it" no "$(alive "$pid")"
 check "all of them" 4 "$(sql "select count(*) from job where study_id = $heavy and state = 'cancelled'")"
 fetch DELETE "/api/v1/jobs/$heavy"
 check "it is deleted" 204 "$CODE"
-check "with its members" 0 "$(sql "select count(*) from job where study_id = $heavy or id = $heavy")"
+check "with its members" 0 "$(wait_count "study_id = $heavy or id = $heavy" 0)"
 
 # A repetition solves nothing.
 again=$(submit "$(study '.name = "again"')")

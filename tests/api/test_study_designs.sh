@@ -110,6 +110,10 @@ check "only what has failed is solved again" "3 3" \
   "$(sql "select sum(reused_from is null) || ' ' || sum(state = 'failed') from job where study_id = $again")"
 fetch DELETE "/api/v1/jobs/$id"
 check "a study is deleted" 204 "$CODE"
+for _ in $(seq 200); do
+  [ "$(sql "select count(*) from study_deleted")" = 0 ] && break
+  sleep 0.05
+done
 check "with its members and what it had in the database" "0 0 0" \
   "$(sql "select (select count(*) from job where study_id = $id) || ' ' || (select count(*) from study_value where study_id = $id) || ' ' || (select count(*) from sqlite_schema where name = 'study_$id')")"
 fetch GET "/api/v1/studies/$id"
