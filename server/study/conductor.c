@@ -181,7 +181,7 @@ static double running_fractions(struct conductor *conductor, int64_t id) {
 }
 
 static void report_progress(struct conductor *conductor, struct work *work, int64_t ended) {
-  double members = (double)work->study.count;
+  double members = (double)(work->search ? study_search_budget(work->search) : work->study.count);
   double fraction = ((double)ended + running_fractions(conductor, work->id)) / members;
   struct progress progress = progress_none();
   int64_t now = clock_monotonic_ms();
@@ -191,7 +191,7 @@ static void report_progress(struct conductor *conductor, struct work *work, int6
   pace_take(&work->pace, now, fraction);
   progress.fraction = fraction > 1 ? 1 : fraction;
   progress.step = ended;
-  progress.steps = (int64_t)work->study.count;
+  progress.steps = (int64_t)members;
   progress.since = pace_reference(&work->pace, now);
   pthread_mutex_lock(&conductor->mutex);
   work->progress = progress;
@@ -265,6 +265,26 @@ static bool step_add(struct conductor *conductor, struct work *work) {
   return false;
 }
 
+/* Lets a search ask for its next members when those it has have ended; true when there are some, or
+ * the study has failed. */
+static bool step_search(struct conductor *conductor, struct work *work) {
+  struct error error = {.status = STATUS_OK};
+  bool more = false;
+  if (!work->search || work->stored || work->out_of_time || work->added < work->study.count) {
+    return false;
+  }
+  enum status status = work_search(&conductor->settings, work, &more, &error);
+  if (status == STATUS_OK || status == STATUS_CONFLICT) {
+    return more;
+  }
+  complain(work->id, &error);
+  if (!store_failed(status) && work_fail(&conductor->settings, work, &error, NULL) == STATUS_OK) {
+    changed(conductor, work->id);
+    return true;
+  }
+  return false;
+}
+
 /* Looks after a study that runs; true when there is more to do at once. */
 static bool step_run(struct conductor *conductor, const struct study_job *job) {
   struct work *work = work_find(conductor, job->id, job->attempt);
@@ -279,10 +299,14 @@ static bool step_run(struct conductor *conductor, const struct study_job *job) {
     work->followed = !follow(conductor, job->id, STUDY_PRIORITY);
     more = more || !work->followed;
   }
-  if (!out_of_time(conductor, work) && !work->stored) {
+  bool waits = work->search && work->added == work->study.count; /* for the end of a round */
+  if (!out_of_time(conductor, work) && !work->stored && !waits) {
     more = step_add(conductor, work) || more;
   }
   int64_t live = count_live(conductor, job->id, &ended, &error);
+  if (live == 0 && step_search(conductor, work)) {
+    return true;
+  }
   if (live == 0 && (work->stored || work->out_of_time)) {
     finish(conductor, work);
     return true; /* another one may begin */

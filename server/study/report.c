@@ -76,7 +76,12 @@ static json_t *document_make(const struct conductor_settings *settings, struct w
   }
   figures.computed = report->count - figures.resumed;
   store_study_cpu(settings->store, work->id, &figures.cpu_s, NULL);
-  return study_document(&work->spec, &work->study, &results, &figures, ending);
+  json_t *document = study_document(&work->spec, &work->study, &results, &figures, ending);
+  if (document && work->search && study_search_report(work->search, document) != STATUS_OK) {
+    json_decref(document);
+    document = NULL;
+  }
+  return document;
 }
 
 /* The document as text; *document as it was written. NULL without memory. */

@@ -16,6 +16,7 @@ void work_destroy(struct work *work) {
     return;
   }
   columns_destroy(work->columns);
+  study_search_destroy(work->search);
   study_release(&work->study);
   job_spec_release(&work->spec);
   free(work->submitter);
@@ -70,6 +71,9 @@ enum status work_begin(const struct conductor_settings *settings, struct study_c
                                        &made->spec, error);
   if (status == STATUS_OK) {
     limit_read(made, claim->document);
+    status = work_search_begin(settings, made, error);
+  }
+  if (status == STATUS_OK) {
     status = study_expand(settings->reader, made->spec.document, false, &made->study, error);
   }
   if (status == STATUS_OK) {
@@ -156,7 +160,7 @@ enum status work_add(const struct conductor_settings *settings, struct work *wor
   batch_clear(&batch);
   work->added += stored;
   *more = status == STATUS_OK && work->added < work->study.count;
-  if (status == STATUS_OK && !*more) {
+  if (status == STATUS_OK && !*more && !work->search) { /* a search may go on: see work_search */
     status = store_study_stored(settings->store, work->id, work->attempt, work->study.count, error);
     work->stored = status == STATUS_OK;
   }

@@ -6,6 +6,7 @@
 #include "server/store/study.h"
 #include "server/study/columns.h"
 #include "server/study/conductor.h"
+#include "solver/job/study_optimise.h"
 
 struct work {
   int64_t id, attempt;
@@ -13,6 +14,8 @@ struct work {
   struct job_spec spec; /* of the study */
   struct study study;
   struct columns *columns;
+  struct study_search *search; /* of a study that searches, else NULL */
+  size_t told;                 /* members that the search knows the results of */
   char *submitter;
   int priority;
   bool followed; /* the members that wait have this priority */
@@ -40,6 +43,16 @@ void work_destroy(struct work *work);
 /* Stores the next members; *more: whether there are others left. Failures of the store. */
 enum status work_add(const struct conductor_settings *settings, struct work *work, bool *more,
                      struct error *error);
+
+/* Starts the search of a study that has one; its members are those of the first round. */
+enum status work_search_begin(const struct conductor_settings *settings, struct work *work,
+                              struct error *error);
+
+/* Goes on with a search whose members so far have all ended. *more: whether it has asked for
+ * others; without, all members are stored. The failures of study_search_next, study_expand and the
+ * store. */
+enum status work_search(const struct conductor_settings *settings, struct work *work, bool *more,
+                        struct error *error);
 
 /* Makes the result of a study whose members have all ended, and ends it. */
 enum status work_finish(const struct conductor_settings *settings, struct work *work,

@@ -252,6 +252,14 @@ enum status study_search_next(struct study_search *search, bool *more, struct er
   return status;
 }
 
+size_t study_search_budget(const struct study_search *search) {
+  size_t sum = 0;
+  for (size_t s = 0; s < search->starts; s++) {
+    sum += search->line[s].budget;
+  }
+  return sum;
+}
+
 size_t study_search_members(const struct study_search *search) {
   return search->members;
 }

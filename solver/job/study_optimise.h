@@ -44,6 +44,9 @@ enum status study_search_next(struct study_search *search, bool *more, struct er
 /* Members that the search has asked for so far. */
 size_t study_search_members(const struct study_search *search);
 
+/* Members that the search may ask for at most. */
+size_t study_search_budget(const struct study_search *search);
+
 /* Sets "optimum", "starts" and "history" in the study's result. STATUS_OK or STATUS_NO_MEMORY. */
 enum status study_search_report(const struct study_search *search, json_t *document);
 

@@ -39,11 +39,12 @@ void study_settle(struct study_run *run, size_t index) {
   run->figures.resumed += state->resumed;
   run->figures.computed += !state->resumed;
   if (run->options->events) {
+    size_t members = run->search ? study_search_budget(run->search) : run->study.distinct;
     fprintf(run->options->events,
             "{\"event\":\"progress\",\"fraction\":%.4f,\"step\":%zu,\"steps\":%zu,"
             "\"member\":%zu,\"spec_hash\":\"%s\",\"reason\":\"%s\"}\n",
-            (double)run->settled / (double)run->study.distinct, run->settled, run->study.distinct,
-            index, member->hash, state->reason);
+            (double)run->settled / (double)members, run->settled, members, index, member->hash,
+            state->reason);
     fflush(run->options->events);
   }
   if (run->options->verbose) {

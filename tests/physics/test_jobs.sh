@@ -21,7 +21,9 @@ small='def small: .load.pressure.steps = 1 | .error_estimate = false | .contact 
        top: 1}) | del(.metrics);
   if .kind == "study" then .base |= small | del(.ranking) |
     (if .set then .set |= with_entries(select(.key | test("^/(actuator|material)"))) else . end) |
-    (if .designs then .designs |= .[0:1] else .parameters |= map(.values |= .[0:1]) end) |
+    (if .designs then .designs |= .[0:1]
+     elif .sampling == "optimise" then .budget = 1
+     else .parameters |= map(.values |= .[0:1]) end) |
     (if .sampling == "one-at-a-time" then .parameters |= .[0:1] else . end) |
     (if .designs then .designs[0].set |= with_entries(select(.key | test("^/(actuator|material)")))
      else . end)
