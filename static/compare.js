@@ -1,75 +1,87 @@
-// Several jobs side by side: one plot, one table.
+// The page that compares jobs, as the daemon made it: the curves answer, and the bodies are turned
+// together. What is drawn over the pressure is part of the address.
 
-import { request } from './api.js';
+import { jobUrl, request } from './api.js';
 import { find, make } from './dom.js';
-import { byImportance, isErrorOf, number, quantity } from './format.js';
-import { showProblem } from './problem.js';
+import { quantity } from './format.js';
+import { remember } from './live.js';
 
-function headOf(jobs) {
-  return make('thead', {}, make('tr', {}, make('th', { scope: 'col' }, 'Quantity'),
-    make('th', { scope: 'col' }, 'Unit'),
-    ...jobs.map((job) => make('th', { scope: 'col', class: 'number' },
-      make('a', { href: `/jobs/${job.id}` }, `Job ${job.id}`),
-      make('span', { class: 'job-name clamp', title: job.name }, job.name)))));
+const PRESSURE = 'pressure_kPa';
+const FIRST = ['bending_angle_deg', 'turn_angle_deg', 'elongation_mm'];
+
+function label(key) {
+  const { label: text, unit } = quantity(key);
+  return unit ? `${text} (${unit})` : text;
 }
 
-function groupOf(title, columns, rows) {
-  const head = make('tr', {}, make('th', { scope: 'rowgroup', colspan: columns }, title));
-  return rows.length > 0 ? [make('tbody', { class: 'group' }, head, ...rows)] : [];
+function jobs() {
+  return [...document.querySelectorAll('#compare-table th[data-job]')].map((head) => ({
+    id: head.dataset.job, name: head.querySelector('.job-name').textContent || `Job ${head.dataset.job}`,
+  }));
 }
 
-// A parameter of the jobs, as it was written in each.
-function parameterRow({ pointer, texts }) {
-  return make('tr', { 'data-pointer': pointer },
-    make('th', { scope: 'row' }, make('code', {}, pointer)), make('td'),
-    ...texts.map((text) => make('td', { class: 'number' }, text === null ? 'default' : String(text))));
-}
-
-function metricRow({ name, values }) {
-  const { label, unit } = quantity(name);
-  return make('tr', { 'data-metric': name }, make('th', { scope: 'row' }, label),
-    make('td', { class: 'unit' }, unit),
-    ...values.map((value) => make('td', { class: 'number' }, number(value))));
-}
-
-function showTable({ jobs, parameters, metrics }) {
-  const columns = jobs.length + 2;
-  const names = metrics.map(({ name }) => name);
-  const rows = metrics.filter(({ name }) => !isErrorOf(name, names)).sort((a, b) => byImportance(a.name, b.name));
-  find('compare-table').replaceChildren(headOf(jobs),
-    ...groupOf('Where the jobs differ', columns, parameters.map(parameterRow)),
-    ...groupOf('Results', columns, rows.map(metricRow)));
-}
-
-function showPlot(query, ids) {
-  const plot = `/api/v1/plots/overlay.png${query}`;
-  const image = find('compare-plot');
-  if (image.getAttribute('src') !== plot) {
-    find('compare-figure').hidden = false;
-    image.alt = `Curves against pressure of the jobs ${ids.join(', ')}`;
-    image.src = plot;
-    find('compare-link').href = plot;
-  }
-}
-
-// Too many jobs, or one without a curve: the table is shown alone.
-find('compare-plot').addEventListener('error', () => {
-  find('compare-figure').hidden = true;
-});
-
-// Shows the comparison of the jobs with these ids; hides it when there are fewer than two.
-export async function showComparison(ids) {
-  const section = find('compare');
-  section.hidden = ids.length < 2;
-  if (section.hidden) {
-    return;
-  }
-  const query = `?jobs=${ids.join(',')}`;
-  showPlot(query, ids);
+async function samplesOf({ id, name }) {
   try {
-    showTable(await request(`/api/v1/compare${query}`));
-    showProblem(find('compare-problem'), null);
-  } catch (problem) {
-    showProblem(find('compare-problem'), problem);
+    const { samples } = await request(jobUrl(id, '/result'));
+    return { id, name, samples: samples || [] };
+  } catch {
+    return { id, name, samples: [] }; // a job without a result has no curve
   }
+}
+
+// What all samples know as numbers, the most telling first.
+function keysOf(all) {
+  const keys = new Set(all.flatMap(({ samples }) => Object.entries(samples.at(-1) || {})
+    .filter(([key, value]) => typeof value === 'number' && key !== PRESSURE).map(([key]) => key)));
+  const rank = (key) => (FIRST.includes(key) ? FIRST.indexOf(key) : FIRST.length);
+  return [...keys].sort((a, b) => rank(a) - rank(b) || label(a).localeCompare(label(b)));
+}
+
+function seriesOf(all, key) {
+  return all.map(({ id, name, samples }) => ({
+    name: `${id} · ${name}`,
+    points: samples.filter((sample) => typeof sample[key] === 'number' && typeof sample[PRESSURE] === 'number')
+      .map((sample) => [sample[PRESSURE], sample[key]]),
+  }));
+}
+
+async function setUpCurves() {
+  const all = await Promise.all(jobs().map(samplesOf));
+  const keys = keysOf(all);
+  if (keys.length === 0) {
+    return; // the picture stays
+  }
+  const { Curves } = await import('./curves.js');
+  const address = new URL(window.location.href);
+  const select = make('select', { id: 'curve-key', autocomplete: 'off' },
+    ...keys.map((key) => make('option', { value: key }, label(key))));
+  select.value = keys.includes(address.searchParams.get('y')) ? address.searchParams.get('y') : keys[0];
+  find('curves-bar').append(make('label', { class: 'inline' }, 'Show ', select));
+  const place = make('div', { id: 'curve-chart', role: 'img' });
+  find('curves').querySelector('figure').replaceChildren(place);
+  const curves = new Curves(place);
+  const show = () => {
+    curves.show({ x: label(PRESSURE), y: label(select.value), series: seriesOf(all, select.value) });
+    place.setAttribute('aria-label', `${label(select.value)} against pressure of ${all.length} jobs; `
+      + 'the last values are in the table below');
+  };
+  select.addEventListener('change', () => {
+    address.searchParams.set('y', select.value);
+    window.history.replaceState(null, '', `${address.pathname}?${decodeURIComponent(address.searchParams)}`);
+    show();
+  });
+  show();
+}
+
+async function setUpShapes() {
+  if (find('shapes')) {
+    const { linkBodies } = await import('./bodies.js');
+    await linkBodies(find('shapes'));
+  }
+}
+
+remember();
+if (find('curves')) {
+  setUpCurves();
+  setUpShapes();
 }

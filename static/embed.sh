@@ -1,9 +1,10 @@
 #!/bin/sh
 # Writes the C table of the pages to standard output: embed.sh SOURCE_DIR FILE...
 #
-# Each FILE is made below static/ here, or else it is of SOURCE_DIR. Pages get the path /FILE, everything
-# else /static/FILE. The bytes are taken in by the assembler, since a compiler needs long for a table of a
-# megabyte. Texts are there a second time packed by gzip, and a third time when FILE.br exists.
+# Each FILE is made below static/ here, or else it is of SOURCE_DIR. Pages get the path /FILE (those in
+# pages/, which the daemon fills in, just FILE, which no request has), everything else /static/FILE. The
+# bytes are taken in by the assembler, since a compiler needs long for a table of a megabyte. Texts are
+# there a second time packed by gzip, and a third time when FILE.br exists.
 #
 # A library, vendor/NAME.js, is large and rarely changes: it is served as vendor/NAME-HASH.js, which may be
 # kept for ever, and vendor/NAME.js is a module of one line that hands on what that one exports.
@@ -31,6 +32,7 @@ content_type() {
 
 url_path() {
   case $1 in
+    pages/*) echo "$1" ;;
     *.html) echo "/$1" ;;
     *) echo "/static/$1" ;;
   esac

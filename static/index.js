@@ -1,97 +1,107 @@
-// The page of all jobs. The filter and the compared jobs are part of the address.
+// The page of all jobs, as the daemon made it: it is kept up to date, and jobs for a comparison are kept
+// from page to page. Filter, page and selection are part of the address.
 
-import { request } from './api.js';
-import { showComparison } from './compare.js';
 import { find, setText } from './dom.js';
-import { JobList } from './list.js';
+import { remember, renew } from './live.js';
 import { poll } from './poll.js';
 import { showProblem } from './problem.js';
-import { showSession } from './session.js';
-import { setUpSubmit } from './submit.js';
+
+const MOST = 12; // that can be compared
+const ACTIVE = '.state.queued, .state.starting, .state.running, .state.cancelling, .state.retry_wait';
 
 const address = new URLSearchParams(window.location.search);
-const idsInAddress = (address.get('compare') || '').split(',').map(Number);
-const selected = new Set(idsInAddress.filter((id) => Number.isSafeInteger(id) && id > 0));
-const filter = find('filter-state');
-const earlier = []; // cursors of the pages before this one
-let cursor = null;
-let next = null;
+const selected = new Set((address.get('compare') || '').split(',').filter((id) => /^[1-9]\d*$/.test(id)));
+const button = find('compare-button');
+const filter = find('filter');
 
-filter.value = address.get('state') || '';
-
-function saveAddress() {
-  const parts = [];
-  if (filter.value) {
-    parts.push(`state=${filter.value}`);
-  }
-  if (selected.size > 0) {
-    parts.push(`compare=${[...selected].join(',')}`);
-  }
-  const query = parts.length > 0 ? `?${parts.join('&')}` : '';
-  window.history.replaceState(null, '', window.location.pathname + query + window.location.hash);
+function withSelection(url) {
+  const target = new URL(url, window.location.href);
+  target.searchParams.delete('compare');
+  const rest = target.search + (selected.size > 0
+    ? `${target.search ? '&' : '?'}compare=${[...selected].join(',')}` : '');
+  return target.pathname + rest + target.hash;
 }
 
-function compare() {
-  saveAddress();
-  showComparison([...selected].sort((a, b) => a - b));
+function boxes() {
+  return [...document.querySelectorAll('#jobs input[type="checkbox"]')];
 }
 
-const list = new JobList(selected, compare);
+// Everything that follows from what is selected.
+function showSelection() {
+  for (const box of boxes()) {
+    box.checked = selected.has(box.value);
+  }
+  for (const link of document.querySelectorAll('#pages a')) {
+    link.setAttribute('href', withSelection(link.getAttribute('href')));
+  }
+  button.disabled = selected.size < 2 || selected.size > MOST;
+  find('compare-clear').hidden = selected.size === 0;
+  const count = selected.size === 0 ? 'Tick jobs to compare them.'
+    : `${selected.size} ${selected.size === 1 ? 'job' : 'jobs'} selected${selected.size > MOST ? `; up to ${MOST} can be compared` : ''}`;
+  setText(find('compare-count'), count);
+  window.history.replaceState(null, '', withSelection(window.location.href));
+}
 
-function listUrl() {
-  const query = new URLSearchParams();
-  if (filter.value) {
-    query.set('state', filter.value);
+// Says aloud what ended since the last time.
+function announce(before) {
+  const ended = [...document.querySelectorAll('#jobs tr')].filter((row) => before.has(row.dataset.id)
+    && !row.querySelector(ACTIVE));
+  if (ended.length > 0) {
+    setText(find('announce'), ended.map((row) =>
+      `Job ${row.dataset.id} ${row.querySelector('.state').textContent}.`).join(' '));
   }
-  if (cursor !== null) {
-    query.set('cursor', cursor);
-  }
-  const text = query.toString();
-  return `/api/v1/jobs${text ? `?${text}` : ''}`;
+}
+
+function activeJobs() {
+  return new Set([...document.querySelectorAll('#jobs tr')].filter((row) => row.querySelector(ACTIVE))
+    .map((row) => row.dataset.id));
 }
 
 async function update() {
+  const before = activeJobs();
   try {
-    const page = await request(listUrl());
-    const isLive = list.show(page.jobs);
-    next = page.next ?? null;
+    await renew();
     showProblem(find('list-problem'), null);
-    find('empty').hidden = page.jobs.length > 0;
-    setText(find('empty'), filter.value ? 'No job is in this state.' : 'There are no jobs yet.');
-    find('pages').hidden = next === null && earlier.length === 0;
-    find('older').disabled = next === null;
-    find('newer').disabled = earlier.length === 0;
-    setText(find('live'), isLive ? 'refreshing while jobs run' : '');
-    return isLive;
   } catch (problem) {
     showProblem(find('list-problem'), problem);
-    setText(find('live'), '');
-    return problem.status === 0;
+    return true;
+  }
+  showSelection();
+  announce(before);
+  return activeJobs().size > 0;
+}
+
+function showProgress({ job, fraction }) {
+  const bar = document.querySelector(`#jobs tr[data-id="${job}"] progress`);
+  if (bar) {
+    bar.value = fraction;
   }
 }
 
-const refresh = poll(update, '/api/v1/events', (report) => list.showProgress(report));
-
-function goTo(target) {
-  cursor = target;
+remember();
+showSelection();
+filter.addEventListener('change', () => {
+  const query = new URLSearchParams({ state: find('filter-state').value });
+  window.location.assign(withSelection(`/${query.get('state') ? `?${query}` : ''}`));
+});
+find('picked').addEventListener('change', ({ target }) => {
+  if (target.checked) {
+    selected.add(target.value);
+  } else {
+    selected.delete(target.value);
+  }
+  showSelection();
+});
+find('picked').addEventListener('submit', (event) => {
+  event.preventDefault();
+  window.location.assign(`/compare?jobs=${[...selected].join(',')}`);
+});
+find('compare-clear').addEventListener('click', () => {
+  selected.clear();
+  showSelection();
+  boxes().find((box) => !box.disabled)?.focus();
+});
+const refresh = poll(update, '/api/v1/events', showProgress);
+if (activeJobs().size > 0) {
   refresh();
 }
-
-filter.addEventListener('change', () => {
-  earlier.length = 0;
-  saveAddress();
-  goTo(null);
-});
-find('older').addEventListener('click', () => {
-  earlier.push(cursor);
-  goTo(next);
-});
-find('newer').addEventListener('click', () => goTo(earlier.pop()));
-find('compare-clear').addEventListener('click', () => {
-  list.clearSelection();
-  compare();
-});
-setUpSubmit(refresh);
-showSession();
-refresh();
-showComparison([...selected].sort((a, b) => a - b));

@@ -1,60 +1,119 @@
-// The box where a job is pasted, checked and submitted.
+// The page where jobs are written: the daemon checks the text while it is written, what is wrong is shown
+// at its line and at its field, and the fields beside the text change it.
 
-import { post } from './api.js';
+import { post, request } from './api.js';
 import { find, make } from './dom.js';
+import { Editor } from './editor.js';
 import { example } from './example.js';
+import { Fields } from './fields.js';
+import { remember } from './live.js';
 import { problemView } from './problem.js';
 
-// Puts the cursor where the daemon found the mistake.
-function select(area, line, column) {
-  const before = area.value.split('\n').slice(0, line - 1);
-  const start = before.reduce((sum, text) => sum + text.length + 1, 0) + Math.max(0, column - 1);
-  area.focus();
-  area.setSelectionRange(start, Math.min(start + 1, area.value.length));
+const CHECK_MS = 350; // after the last key
+
+const editor = new Editor(find('document'), find('gutter'));
+const verdict = find('verdict');
+let fields = null;
+let checking = 0;
+let timer = null;
+
+function show(element, isWrong = false) {
+  verdict.classList.toggle('bad', isWrong);
+  verdict.replaceChildren(element);
 }
 
-function refusal(problem, area) {
-  const view = problemView(problem, area.value);
-  const { line, column } = problem.body;
+function showProblem(problem) {
+  const { pointer, line, column, detail } = problem.body || {};
+  editor.mark(line > 0 ? line : 0);
+  fields?.mark(pointer ?? null, detail || problem.message);
+  const view = problemView(problem, editor.text);
   if (line > 0) {
     const button = make('button', { type: 'button' }, 'Go to this place');
-    button.addEventListener('click', () => select(area, line, column || 1));
+    button.addEventListener('click', () => editor.go(line, column || 1));
     view.append(button);
   }
-  return view;
+  show(view, true);
 }
 
-// Sets up the form; onSubmitted is called after each accepted job.
-export function setUpSubmit(onSubmitted) {
-  const area = find('document');
-  const answer = find('submit-answer');
-  const buttons = find('submit-form').querySelectorAll('button');
+function showValid({ kind }) {
+  editor.mark(0);
+  fields?.mark(null);
+  show(make('p', { class: 'answer' }, `This job (${kind}) is valid.`));
+}
 
-  async function send(url, accepted) {
-    buttons.forEach((button) => { button.disabled = true; });
-    answer.replaceChildren(make('p', { class: 'muted' }, 'Sending…'));
-    try {
-      answer.replaceChildren(accepted(await post(url, area.value || ' ')));
-    } catch (problem) {
-      answer.replaceChildren(refusal(problem, area));
-    } finally {
-      buttons.forEach((button) => { button.disabled = false; });
+// Asks the daemon about the text. An answer that is overtaken by another question is dropped.
+async function check() {
+  const number = ++checking;
+  fields?.show(editor.text);
+  if (editor.text.trim() === '') {
+    editor.mark(0);
+    show(make('p', { class: 'muted' }, 'Write a job, or start from an example.'));
+    return;
+  }
+  try {
+    const answer = await post('/api/v1/jobs:validate', editor.text);
+    if (number === checking) {
+      showValid(answer);
+    }
+  } catch (problem) {
+    if (number === checking) {
+      showProblem(problem);
     }
   }
-
-  find('submit-form').addEventListener('submit', (event) => {
-    event.preventDefault();
-    send('/api/v1/jobs', (job) => {
-      onSubmitted();
-      return make('p', { class: 'answer' }, 'Accepted as ',
-        make('a', { href: `/jobs/${job.id}` }, `job ${job.id}`), '.');
-    });
-  });
-  find('validate').addEventListener('click', () => {
-    send('/api/v1/jobs:validate', () => make('p', { class: 'answer' }, 'This job is valid.'));
-  });
-  find('example').addEventListener('click', () => {
-    area.value = example;
-    area.focus();
-  });
 }
+
+function checkSoon() {
+  clearTimeout(timer);
+  timer = setTimeout(check, CHECK_MS);
+}
+
+async function submit(event) {
+  event.preventDefault();
+  const button = find('submit-form').querySelector('.primary');
+  button.disabled = true;
+  try {
+    const job = await post('/api/v1/jobs', editor.text || ' ');
+    find('submit-answer').replaceChildren(make('p', { class: 'answer' }, 'Accepted as ',
+      make('a', { href: `/jobs/${job.id}` }, `job ${job.id}`), '.'));
+  } catch (problem) {
+    find('submit-answer').replaceChildren();
+    showProblem(problem);
+  } finally {
+    button.disabled = false;
+  }
+}
+
+// A document of one line is laid out so that a person can read it.
+function layOut() {
+  const text = editor.text.trim();
+  if (text !== '' && !text.includes('\n')) {
+    try {
+      editor.area.value = JSON.stringify(JSON.parse(text), null, 2);
+      editor.number();
+    } catch {
+      // it stays as it is; the check says what is wrong
+    }
+  }
+}
+
+async function setUp() {
+  remember();
+  layOut();
+  find('submit-form').addEventListener('submit', submit);
+  editor.area.addEventListener('input', checkSoon);
+  find('example').addEventListener('click', () => {
+    editor.text = example;
+    check();
+  });
+  try {
+    fields = new Fields(find('fields'), await request('/api/v1/schemas/job'), (text) => {
+      editor.text = text;
+      check();
+    });
+  } catch (problem) {
+    showProblem(problem);
+  }
+  check();
+}
+
+setUp();

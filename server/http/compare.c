@@ -1,8 +1,8 @@
+#include "server/http/compare.h"
+
 #include <string.h>
 
 #include "server/http/handlers.h"
-
-enum { COMPARE_MAX = 50 };
 
 struct comparison {
   struct job_record records[COMPARE_MAX];
@@ -73,7 +73,7 @@ static json_t *parameter_row(const struct comparison *comparison, const char *po
                    "texts", texts);
 }
 
-static json_t *parameters_view(const struct comparison *comparison) {
+static json_t *parameters_view(const struct comparison *comparison, bool differing) {
   json_t *rows = json_array(), *seen = json_object();
   for (size_t i = 0; i < comparison->count; i++) {
     const char *pointer;
@@ -81,7 +81,7 @@ static json_t *parameters_view(const struct comparison *comparison) {
     json_object_foreach(comparison->parameters[i], pointer, cell) {
       if (!json_object_get(seen, pointer)) {
         json_object_set_new(seen, pointer, json_true());
-        if (parameter_differs(comparison, pointer)) {
+        if (parameter_differs(comparison, pointer) == differing) {
           json_array_append_new(rows, parameter_row(comparison, pointer));
         }
       }
@@ -122,20 +122,32 @@ static json_t *jobs_view(const struct comparison *comparison) {
   return jobs;
 }
 
-void compare_show(struct request *request, struct reply *reply) {
+enum status compare_read(struct store *store, const int64_t *ids, size_t count, bool all,
+                         json_t **view, struct error *error) {
   struct comparison comparison;
+  enum status status = comparison_read(store, ids, count, &comparison, error);
+  if (status == STATUS_OK) {
+    *view = json_pack("{s:o, s:o, s:o}", "jobs", jobs_view(&comparison), "parameters",
+                      parameters_view(&comparison, true), "metrics", metrics_view(&comparison));
+  }
+  if (status == STATUS_OK && all && *view) {
+    json_object_set_new(*view, "same", parameters_view(&comparison, false));
+  }
+  comparison_clear(&comparison);
+  return status;
+}
+
+void compare_show(struct request *request, struct reply *reply) {
   struct error error;
   int64_t ids[COMPARE_MAX];
   size_t count;
+  json_t *view = NULL;
   if (!request_query_jobs(request, reply, "jobs", COMPARE_MAX, ids, &count)) {
     return;
   }
-  if (comparison_read(request->service->store, ids, count, &comparison, &error) != STATUS_OK) {
-    reply_error(reply, &error);
+  if (compare_read(request->service->store, ids, count, false, &view, &error) == STATUS_OK) {
+    reply_json(reply, 200, view);
   } else {
-    reply_json(reply, 200,
-               json_pack("{s:o, s:o, s:o}", "jobs", jobs_view(&comparison), "parameters",
-                         parameters_view(&comparison), "metrics", metrics_view(&comparison)));
+    reply_error(reply, &error);
   }
-  comparison_clear(&comparison);
 }

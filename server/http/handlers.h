@@ -51,8 +51,11 @@ handler metrics_show;
 handler session_open, session_close, session_caller;
 
 /* pages.c */
-handler page_job, page_show, page_study;
+handler page_show;
 /* Whether the request's path names a file of the table static_files, or the start page. */
 bool page_exists(const struct request *request);
+
+/* page_index.c and its like: pages with data in them */
+handler page_index, page_job, page_study, page_compare, page_submit;
 
 #endif

@@ -15,7 +15,7 @@ static const struct static_file *page_find(const char *path) {
   return NULL;
 }
 
-/* The file of a request's path: the path itself, or with ".html" added, or the start page. */
+/* The file of a request's path: the path itself, or with ".html" added. */
 static const struct static_file *page_of(const struct request *request) {
   char path[256] = "";
   size_t used = 0;
@@ -25,9 +25,6 @@ static const struct static_file *page_of(const struct request *request) {
     if (used >= sizeof path - sizeof ".html") {
       return NULL;
     }
-  }
-  if (used == 0) {
-    return page_find("/index.html");
   }
   const struct static_file *file = page_find(path);
   if (!file) {
@@ -56,7 +53,7 @@ static struct representation page_choose(const struct request *request,
   return (struct representation){&file->plain, NULL, ""};
 }
 
-static void page_reply(const struct request *request, struct reply *reply,
+static void file_reply(const struct request *request, struct reply *reply,
                        const struct static_file *file) {
   struct representation chosen = page_choose(request, file);
   char etag[40];
@@ -80,32 +77,5 @@ bool page_exists(const struct request *request) {
 }
 
 void page_show(struct request *request, struct reply *reply) {
-  page_reply(request, reply, page_of(request));
-}
-
-void page_job(struct request *request, struct reply *reply) {
-  const struct static_file *file = page_find("/job.html");
-  int64_t id;
-  if (!request_id(request, reply, &id)) {
-    return;
-  }
-  file = file ? file : page_find("/index.html");
-  if (file) {
-    page_reply(request, reply, file);
-  } else {
-    reply_problem(reply, 404, "not_found", "This build carries no pages.");
-  }
-}
-
-void page_study(struct request *request, struct reply *reply) {
-  const struct static_file *file = page_find("/study.html");
-  int64_t id;
-  if (!request_id(request, reply, &id)) {
-    return;
-  }
-  if (file) {
-    page_reply(request, reply, file);
-  } else {
-    reply_problem(reply, 404, "not_found", "This build carries no pages.");
-  }
+  file_reply(request, reply, page_of(request));
 }

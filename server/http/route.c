@@ -62,8 +62,12 @@ static const struct route {
     {HTTP_POST, ROLE_NONE, "sign-in", session_open, "next"},
     {HTTP_POST, ROLE_NONE, "sign-out", session_close, ""},
     {HTTP_GET, ROLE_NONE, "sign-in", page_show, "next"},
+    /* Pages tell for themselves who may read: a browser is sent to where it can sign in. */
+    {HTTP_GET, ROLE_NONE, "", page_index, NULL},
     {HTTP_GET, ROLE_NONE, "jobs/{id}", page_job, NULL},
     {HTTP_GET, ROLE_NONE, "studies/{id}", page_study, NULL},
+    {HTTP_GET, ROLE_NONE, "compare", page_compare, NULL},
+    {HTTP_GET, ROLE_NONE, "submit", page_submit, NULL},
 };
 
 /* Matches one segment; a parameter's value is put into *parameter (its suffix cut off). */

@@ -3,7 +3,6 @@
 import { find, make, setText } from '../dom.js';
 import { byImportance, number } from '../format.js';
 import { showProblem } from '../problem.js';
-import { showSession } from '../session.js';
 import { Address } from './address.js';
 import { Designs } from './designs.js';
 import { setUpDownloads } from './downloads.js';
@@ -166,5 +165,4 @@ async function start() {
   requestAnimationFrame(() => setTimeout(() => performance.mark('study-usable')));
 }
 
-showSession();
 start();

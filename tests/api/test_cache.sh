@@ -12,7 +12,7 @@ for path in "/api/v1/jobs/$id/document" "/api/v1/jobs/$id/result" "/api/v1/jobs/
   /openapi.yaml / /docs /sign-in /static/style.css; do
   fetch GET "$path"
   check_match "GET $path has a tag" '^"[^"]+"$' "$(header ETag)"
-  case $path in / | /docs | /sign-in | /static/*) control=no-cache ;; *) control="private, no-cache" ;; esac
+  case $path in /docs | /sign-in | /static/*) control=no-cache ;; *) control="private, no-cache" ;; esac
   check "GET $path is asked for anew" "$control" "$(header Cache-Control)"
   etag=$(header ETag)
   fetch GET "$path" -H "If-None-Match: $etag"

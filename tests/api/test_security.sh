@@ -130,8 +130,19 @@ check "without the secret" 0 "$(grep -cE "secret-word|pneulab_[0-9a-f]{8}" "$WOR
 # A browser: the form, the cookie, and pages of other origins.
 fetch GET /sign-in
 check_match "the form" 'name="token"' "$BODY"
-fetch GET /jobs/1
-check "pages are public: no data is in them" 200 "$CODE"
+for path in / /jobs/1 /compare?jobs=1,2 /submit?from=1; do
+  fetch GET "$path"
+  check "$path has data: it leads to the form" "303 /sign-in?next=$path" "$CODE $(header Location)"
+  fetch GET "$path" -H 'Sec-Fetch-Site: cross-site' -H 'Sec-Fetch-Mode: navigate'
+  check "$path from a foreign page: once more from here" "200 1" \
+    "$CODE $(grep -cF "content=\"0; url=$path\"" <<< "$BODY")"
+  as "$admin" GET "$path"
+  check_match "$path with a token" '^(200|404) text/html' "$CODE $(header Content-Type)"
+done
+fetch GET '/?kind=%22%3E%3Cscript%3E'
+check "what would need escapes is left out" "303 /sign-in?next=/" "$CODE $(header Location)"
+fetch GET '/?kind=%22%3E%3Cscript%3E' -H 'Sec-Fetch-Site: cross-site' -H 'Sec-Fetch-Mode: navigate'
+check "there, too" 1 "$(grep -cF 'content="0; url=/"' <<< "$BODY")"
 fetch POST '/sign-in?next=/jobs/1' --data-urlencode "token= $admin "
 check "signed in" "303 /jobs/1" "$CODE $(header Location)"
 cookie=$(header Set-Cookie)
@@ -150,7 +161,7 @@ fetch DELETE "/api/v1/jobs/4711" -b "${cookie%%;*}" -H "Origin: $URL"
 check "cookie and our own origin" 404 "$CODE"
 fetch GET /api/v1/jobs -H 'Sec-Fetch-Site: cross-site' -H 'Sec-Fetch-Mode: no-cors' -b "${cookie%%;*}"
 check "loaded into a foreign page" "403 cross_origin" "$CODE $(field .code)"
-fetch GET / -H 'Sec-Fetch-Site: cross-site' -H 'Sec-Fetch-Mode: navigate'
+fetch GET / -H 'Sec-Fetch-Site: cross-site' -H 'Sec-Fetch-Mode: navigate' -b "${cookie%%;*}"
 check "a link from a foreign page" 200 "$CODE"
 fetch POST /sign-in -H 'Origin: http://evil.example' --data-urlencode "token=$admin"
 check "signing in from elsewhere" 403 "$CODE"
