@@ -136,7 +136,11 @@ static void designs_reply_columns(const struct request *request, struct reply *r
   if (cache_fresh(request, reply, tag)) {
     return;
   }
-  char *text = designs_columns(table, &size);
+  const char *columns = tables_columns(request->service->tables, table, &size);
+  char *text = columns ? malloc(size + 1) : NULL;
+  if (text) {
+    memcpy(text, columns, size + 1);
+  }
   reply_text(reply, "application/json", text, size);
   if (text) {
     cache_mark(reply, tag);

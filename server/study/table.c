@@ -8,7 +8,7 @@
 #include "server/store/connection.h"
 #include "server/store/sql.h"
 
-enum { TITLE_SIZE = 120 };
+enum { METRICS_MAX = 1000, TITLE_SIZE = 120 };
 
 /* A table in the making. */
 struct making {
@@ -259,10 +259,19 @@ static enum status read_values(struct making *making, struct error *error) {
 
 /* ---- metrics ------------------------------------------------------------------------------ */
 
-static enum status take_metric(struct making *making, sqlite3_stmt *row, struct error *error) {
-  struct study_table *table = making->table;
+/* A metric of a member on its way into the table. */
+struct figure {
+  int row, column;
+  double value;
+};
+
+struct figures {
+  struct figure *list;
+  size_t count, room;
+};
+
+static enum status column_add(struct study_table *table, const char *key, struct error *error) {
   char title[TITLE_SIZE], unit[QUANTITY_UNIT];
-  const char *key = sql_text(row, 0);
   if (!grow(&table->metric, table->metrics + 1, sizeof *table->metric)) {
     return no_memory(error);
   }
@@ -274,9 +283,9 @@ static enum status take_metric(struct making *making, sqlite3_stmt *row, struct 
   return column->key && column->title && column->unit ? STATUS_OK : no_memory(error);
 }
 
-/* The column of a metric from `from` on, where it is unless members differ in what they have; the
+/* The column of a metric: from `from` on, where it is unless members differ in what they have; the
  * number of columns when there is none. */
-static size_t metric_find(const struct study_table *table, size_t from, const char *key) {
+static size_t column_find(const struct study_table *table, size_t from, const char *key) {
   for (size_t i = 0; i < table->metrics; i++) {
     size_t k = (from + i) % table->metrics;
     if (strcmp(table->metric[k].key, key) == 0) {
@@ -286,9 +295,66 @@ static size_t metric_find(const struct study_table *table, size_t from, const ch
   return table->metrics;
 }
 
-/* Reads what came out. The rows of one member stand in the order of the columns. */
-static enum status read_results(struct making *making, struct error *error) {
+/* Adds one figure; *next: the column that is probably the next one's. */
+static enum status figure_add(struct making *making, struct figures *figures, sqlite3_stmt *row,
+                              size_t *next, struct error *error) {
   struct study_table *table = making->table;
+  int at = row_of(making, sqlite3_column_int64(row, 0));
+  const char *key = sql_text(row, 1);
+  size_t k = column_find(table, *next, key);
+  if (at < 0 || (k == table->metrics && table->metrics == METRICS_MAX)) {
+    return STATUS_OK;
+  }
+  if (k == table->metrics && column_add(table, key, error) != STATUS_OK) {
+    return error->status;
+  }
+  if (figures->count == figures->room) {
+    figures->room = 2 * figures->room + 1024;
+    if (!grow(&figures->list, figures->room, sizeof *figures->list)) {
+      return no_memory(error);
+    }
+  }
+  *next = k + 1;
+  figures->list[figures->count++] =
+      (struct figure){.row = at, .column = (int)k, .value = sqlite3_column_double(row, 2)};
+  return STATUS_OK;
+}
+
+static int by_key(const void *a, const void *b) {
+  return strcmp(((const struct study_column *)a)->key, ((const struct study_column *)b)->key);
+}
+
+/* Puts the columns in the order of their names and the figures into the table. */
+static enum status figures_place(struct study_table *table, const struct figures *figures,
+                                 struct error *error) {
+  size_t count = table->metrics;
+  char **found = calloc(count + 1, sizeof *found);
+  size_t *place = calloc(count + 1, sizeof *place);
+  table->result = numbers(table->members * count);
+  bool good = found && place && table->result;
+  for (size_t k = 0; good && k < count; k++) {
+    found[k] = table->metric[k].key;
+  }
+  if (good && count > 1) {
+    qsort(table->metric, count, sizeof *table->metric, by_key);
+  }
+  for (size_t k = 0; good && k < count; k++) {
+    place[k] = column_find(table, 0, found[k]);
+  }
+  for (size_t i = 0; good && i < figures->count; i++) {
+    const struct figure *figure = &figures->list[i];
+    size_t k = place[figure->column];
+    table->result[(size_t)figure->row * count + k] = figure->value;
+    table->metric[k].low = fmin(table->metric[k].low, figure->value);
+    table->metric[k].high = fmax(table->metric[k].high, figure->value);
+  }
+  free(found);
+  free(place);
+  return good ? STATUS_OK : no_memory(error);
+}
+
+static enum status read_metrics(struct making *making, struct error *error) {
+  struct figures figures = {0};
   sqlite3_stmt *statement;
   int row = 0;
   size_t next = 0;
@@ -296,34 +362,16 @@ static enum status read_results(struct making *making, struct error *error) {
       sql_prepare(making->db, &statement, error,
                   "SELECT job.member, metric.name, metric.value FROM job "
                   "CROSS JOIN metric ON metric.job_id = job.id WHERE job.study_id = ?",
-                  "i", table->study_id);
+                  "i", making->table->study_id);
   while (status == STATUS_OK && (status = sql_step(statement, &row, error)) == STATUS_OK && row) {
-    int at = row_of(making, sqlite3_column_int64(statement, 0));
-    size_t k = metric_find(table, next, sql_text(statement, 1));
-    if (at < 0 || k == table->metrics) {
-      continue;
-    }
-    double value = sqlite3_column_double(statement, 2);
-    table->result[(size_t)at * table->metrics + k] = value;
-    table->metric[k].low = fmin(table->metric[k].low, value);
-    table->metric[k].high = fmax(table->metric[k].high, value);
-    next = k + 1 < table->metrics ? k + 1 : 0;
+    status = figure_add(making, &figures, statement, &next, error);
   }
   sql_done(statement);
-  return status;
-}
-
-static enum status read_metrics(struct making *making, struct error *error) {
-  struct study_table *table = making->table;
-  enum status status = rows(making,
-                            "SELECT DISTINCT metric.name FROM job CROSS JOIN metric "
-                            "ON metric.job_id = job.id WHERE job.study_id = ? "
-                            "ORDER BY metric.name LIMIT 1000",
-                            take_metric, error);
-  if (status == STATUS_OK && !(table->result = numbers(table->members * table->metrics))) {
-    status = no_memory(error);
+  if (status == STATUS_OK) {
+    status = figures_place(making->table, &figures, error);
   }
-  return status == STATUS_OK && table->metrics > 0 ? read_results(making, error) : status;
+  free(figures.list);
+  return status;
 }
 
 enum status study_table_read(struct store *store, int64_t study_id, struct study_table **table,

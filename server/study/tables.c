@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "server/store/study.h"
+#include "server/study/designs.h"
 
 enum { KEPT = 4 };
 
@@ -12,6 +13,8 @@ struct entry {
   struct entry *next;
   struct study_table *table;
   uint64_t stamp, used; /* when, by a counter */
+  char *columns;        /* as text, once somebody has asked for it */
+  size_t columns_size;
   unsigned uses;
   bool kept;
 };
@@ -36,6 +39,7 @@ enum status tables_create(struct store *store, struct tables **tables, struct er
 
 static void entry_destroy(struct entry *entry) {
   study_table_destroy(entry->table);
+  free(entry->columns);
   free(entry);
 }
 
@@ -146,6 +150,31 @@ enum status tables_use(struct tables *tables, int64_t study_id, const struct stu
   tables_trim(tables);
   pthread_mutex_unlock(&tables->mutex);
   return STATUS_OK;
+}
+
+const char *tables_columns(struct tables *tables, const struct study_table *table, size_t *size) {
+  struct entry *entry;
+  pthread_mutex_lock(&tables->mutex);
+  for (entry = tables->first; entry && entry->table != table; entry = entry->next) {
+  }
+  bool made = entry && entry->columns;
+  pthread_mutex_unlock(&tables->mutex);
+  if (!entry) {
+    return NULL;
+  }
+  size_t length = 0;
+  char *text = made ? NULL : designs_columns(table, &length);
+  pthread_mutex_lock(&tables->mutex);
+  if (text && !entry->columns) { /* nobody was quicker */
+    entry->columns = text;
+    entry->columns_size = length;
+    text = NULL;
+  }
+  const char *columns = entry->columns;
+  *size = entry->columns_size;
+  pthread_mutex_unlock(&tables->mutex);
+  free(text);
+  return columns;
 }
 
 void tables_release(struct tables *tables, const struct study_table *table) {

@@ -16,6 +16,11 @@ void tables_destroy(struct tables *tables);
  * one when the table is. The failures of study_table_read. From any thread. */
 enum status tables_use(struct tables *tables, int64_t study_id, const struct study_table **table,
                        uint64_t *stamp, struct error *error);
+
+/* designs_columns of a table in use, kept with it: borrowed until tables_release. NULL without
+ * memory. */
+const char *tables_columns(struct tables *tables, const struct study_table *table, size_t *size);
+
 void tables_release(struct tables *tables, const struct study_table *table);
 
 #endif
