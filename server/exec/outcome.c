@@ -237,6 +237,14 @@ void outcome_set_requeued(struct outcome *outcome) {
               "The disk was full or failed while the job ran; it will run again. %.200s", found);
 }
 
+void outcome_put_back(struct outcome *outcome) {
+  *outcome = (struct outcome){0};
+  outcome_set(
+      outcome, ATTEMPT_REQUEUED, "not_begun",
+      "The process that was to solve the job after others ended before; it will run again.");
+  outcome->attempt.exit_code = -1;
+}
+
 void outcome_clear(struct outcome *outcome) {
   free(outcome->result_text);
   json_decref(outcome->result);

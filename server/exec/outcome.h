@@ -50,6 +50,9 @@ void outcome_set_files_lost(struct outcome *outcome, const struct error *error);
  * queued again. */
 void outcome_set_requeued(struct outcome *outcome);
 
+/* The process ended before the job, one of several, had its turn: it is queued again. */
+void outcome_put_back(struct outcome *outcome);
+
 /* Makes a failure without a result of an outcome whose result the store refused. */
 void outcome_set_unstorable(struct outcome *outcome, const struct error *error);
 

@@ -1,42 +1,18 @@
-#include "server/exec/pool.h"
+#include "server/exec/pool_internal.h"
 
 #include <errno.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "server/base/clock.h"
+#include "server/base/file.h"
 #include "server/base/log.h"
-#include "server/exec/run.h"
-#include "server/exec/tally.h"
 
 enum { IDLE_MS = 500, STORE_RETRY_MS = 1000 };
 
-/* One thread of the pool and the job it runs. */
-struct slot {
-  struct pool *pool;
-  pthread_t thread;
-  int64_t job_id; /* 0: none */
-  int64_t attempt;
-  bool cancel;
-  struct progress progress;
-};
-
-struct pool {
-  struct pool_settings settings;
-  pthread_mutex_t mutex; /* guards everything below */
-  pthread_cond_t work;   /* a job may be ready, or the pool ends */
-  bool draining, stopping, aborting;
-  unsigned wakes; /* counts pool_wake, so that none is missed */
-  struct pool_statistics statistics;
-  struct tally *tally; /* has a lock of its own */
-  unsigned thread_count;
-  struct slot slots[];
-};
-
-static void slot_complain(const struct slot *slot, const struct error *error) {
+void slot_complain(const struct slot *slot, const struct error *error) {
   log_event(LOG_LEVEL_ERROR, error->message, LOG_NUMBER("job", slot->job_id),
             LOG_NUMBER("attempt", slot->attempt));
 }
@@ -132,13 +108,7 @@ static enum status slot_store(struct slot *slot, struct outcome *outcome, enum j
   return status;
 }
 
-/* What is known of the job when its attempt starts, for the counts. */
-struct slot_job {
-  char kind[40];
-  int64_t start_ms; /* monotonic */
-};
-
-static struct slot_job slot_job_read(struct slot *slot, const struct claim *claim) {
+struct slot_job slot_job_read(struct slot *slot, const struct claim *claim) {
   struct slot_job job = {.start_ms = clock_monotonic_ms()};
   struct job_record record;
   if (store_job(slot->pool->settings.store, claim->job_id, &record, NULL) == STATUS_OK) {
@@ -151,8 +121,8 @@ static struct slot_job slot_job_read(struct slot *slot, const struct claim *clai
   return job;
 }
 
-static void slot_count(struct slot *slot, const struct slot_job *job, const struct outcome *outcome,
-                       enum job_state state) {
+void slot_count(struct slot *slot, const struct slot_job *job, const struct outcome *outcome,
+                enum job_state state) {
   struct tally_attempt ended = {.kind = job->kind,
                                 .state = job_state_word(state),
                                 .reason = outcome->attempt.reason_code,
@@ -165,14 +135,14 @@ static void slot_count(struct slot *slot, const struct slot_job *job, const stru
   slot->pool->statistics.cpu_s += outcome->attempt.cpu_s;
   pthread_mutex_unlock(&slot->pool->mutex);
   log_event(state == JOB_STATE_FAILED ? LOG_LEVEL_WARNING : LOG_LEVEL_INFO, "attempt ended",
-            LOG_NUMBER("job", slot->job_id), LOG_NUMBER("attempt", slot->attempt),
-            LOG_TEXT("kind", ended.kind), LOG_TEXT("state", ended.state),
-            LOG_TEXT("reason", ended.reason), LOG_NUMBER("wall_s", ended.wall_s),
-            LOG_NUMBER("cpu_s", outcome->attempt.cpu_s),
+            LOG_NUMBER("job", outcome->attempt.job_id),
+            LOG_NUMBER("attempt", outcome->attempt.attempt), LOG_TEXT("kind", ended.kind),
+            LOG_TEXT("state", ended.state), LOG_TEXT("reason", ended.reason),
+            LOG_NUMBER("wall_s", ended.wall_s), LOG_NUMBER("cpu_s", outcome->attempt.cpu_s),
             LOG_NUMBER("memory_MB", ended.peak_memory_MB));
 }
 
-static void slot_finish(struct slot *slot, const struct slot_job *job, struct outcome *outcome) {
+void slot_finish(struct slot *slot, const struct slot_job *job, struct outcome *outcome) {
   struct error error;
   enum job_state state;
   if (slot_store(slot, outcome, &state, &error) == STATUS_OK) {
@@ -195,39 +165,69 @@ static uint64_t memory_limit(const struct pool_settings *settings, const struct 
   return own != 0 && (most == 0 || own < most) ? own : most;
 }
 
+void slot_run_settings(const struct slot *slot, const struct claim *claim,
+                       struct run_settings *run) {
+  const struct pool_settings *settings = &slot->pool->settings;
+  *run = (struct run_settings){.data = settings->data,
+                               .solver = settings->solver,
+                               .isolation = settings->isolation,
+                               .memory_limit_bytes = memory_limit(settings, claim),
+                               .files_limit_bytes = settings->files_limit_bytes,
+                               .study_jobs = study_jobs(settings),
+                               .time_limit_s = settings->time_limit_s,
+                               .timeout_margin_s = settings->timeout_margin_s};
+}
+
+void slot_fill(struct slot *slot, const struct claim *claim, unsigned troubles,
+               char directory[SLOT_DIRECTORY_SIZE], struct outcome *outcome) {
+  const struct pool_settings *settings = &slot->pool->settings;
+  if (outcome->attempt.end == ATTEMPT_WORKER_LOST && disk_blamed(settings->disk, troubles)) {
+    outcome_set_requeued(outcome);
+  }
+  run_directory(claim->job_id, claim->attempt, directory);
+  outcome->attempt.job_id = claim->job_id;
+  outcome->attempt.attempt = claim->attempt;
+  outcome->attempt.directory = directory;
+  outcome->attempt.retry_delay_ms = (int64_t)(1000 * settings->retry_delay_s);
+}
+
 static void slot_run(struct slot *slot, const struct claim *claim) {
   const struct pool_settings *settings = &slot->pool->settings;
-  struct run_settings run = {.data = settings->data,
-                             .solver = settings->solver,
-                             .isolation = settings->isolation,
-                             .memory_limit_bytes = memory_limit(settings, claim),
-                             .files_limit_bytes = settings->files_limit_bytes,
-                             .study_jobs = study_jobs(settings),
-                             .time_limit_s = settings->time_limit_s,
-                             .timeout_margin_s = settings->timeout_margin_s};
+  struct run_settings run;
   struct run_hooks hooks = {.context = slot,
                             .started = slot_started,
                             .progressed = slot_progressed,
                             .stop_wanted = slot_stop_wanted};
   struct outcome outcome;
-  char directory[RUN_DIRECTORY_SIZE + 8];
+  char directory[SLOT_DIRECTORY_SIZE];
   unsigned troubles = disk_troubles(settings->disk);
+  slot_run_settings(slot, claim, &run);
   slot_assign(slot, claim);
   struct slot_job job = slot_job_read(slot, claim);
   settings->changed(settings->context, claim->job_id);
   run_attempt(&run, claim, &hooks, &outcome);
-  if (outcome.attempt.end == ATTEMPT_WORKER_LOST && disk_blamed(settings->disk, troubles)) {
-    outcome_set_requeued(&outcome);
-  }
-  run_directory(claim->job_id, claim->attempt, directory);
-  outcome.attempt.job_id = claim->job_id;
-  outcome.attempt.attempt = claim->attempt;
-  outcome.attempt.directory = directory;
-  outcome.attempt.retry_delay_ms = (int64_t)(1000 * settings->retry_delay_s);
+  slot_fill(slot, claim, troubles, directory, &outcome);
   slot_finish(slot, &job, &outcome);
   outcome_clear(&outcome);
   slot_assign(slot, NULL);
   settings->changed(settings->context, claim->job_id);
+}
+
+/* Runs what was claimed: a job by itself, or those of a chain in one process. */
+static void slot_run_claimed(struct slot *slot, const struct claim *claim) {
+  const struct pool_settings *settings = &slot->pool->settings;
+  bool several = claim->before_id != 0;
+  for (const struct claim *next = claim->next; next; next = next->next) {
+    several = several || next->job_id != 0;
+    if (next->answered_id != 0) {
+      settings->changed(settings->context, next->answered_id);
+    }
+  }
+  if (several) {
+    slot_run_bundle(slot, claim);
+  } else {
+    slot_run(slot, claim);
+  }
 }
 
 /* Waits until there may be work; false when the pool ends. */
@@ -264,8 +264,8 @@ static void *slot_main(void *context) {
         log_event(LOG_LEVEL_ERROR, "cannot take a job", LOG_TEXT("error", error.message));
       }
       if (claimed) {
-        slot_run(slot, &claim);
-        free(claim.document);
+        slot_run_claimed(slot, &claim);
+        claim_clear(&claim);
       } else if (open && claim.answered_id != 0) {
         slot->pool->settings.changed(slot->pool->settings.context, claim.answered_id);
         claimed = true; /* there may be more */
@@ -281,7 +281,11 @@ enum status pool_create(const struct pool_settings *settings, struct pool **pool
   if (!made) {
     return error_set(error, STATUS_NO_MEMORY, NULL, "No memory for the worker pool.");
   }
+  char bundles[PATH_MAX];
   made->settings = *settings;
+  if (snprintf(bundles, sizeof bundles, "%s/" BUNDLE_FOLDER, settings->data) < PATH_MAX) {
+    file_remove_tree(bundles); /* left by a crash */
+  }
   made->statistics.workers = settings->workers;
   pthread_mutex_init(&made->mutex, NULL);
   clock_condition_init(&made->work);
@@ -311,8 +315,10 @@ void pool_wake(struct pool *pool) {
 void pool_cancel(struct pool *pool, int64_t job_id) {
   pthread_mutex_lock(&pool->mutex);
   for (unsigned i = 0; i < pool->thread_count; i++) {
-    if (pool->slots[i].job_id == job_id) {
-      pool->slots[i].cancel = true;
+    struct slot *slot = &pool->slots[i];
+    slot->cancel = slot->cancel || slot->job_id == job_id;
+    for (size_t k = 0; k < slot->members; k++) {
+      slot->cancelled[k] = slot->cancelled[k] || slot->member[k]->job_id == job_id;
     }
   }
   pthread_mutex_unlock(&pool->mutex);

@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 enum { REPORT_FD = 3, USAGE_FD = 4, CHILD_FILES = 5 };
-enum { ARGUMENTS_MAX = 2 * (2 * ISOLATION_PATHS_MAX + 1) + 48, NUMBER_SIZE = 24 };
+enum { ARGUMENTS_MAX = 2 * (2 * ISOLATION_PATHS_MAX + PROCESS_FOLDERS_MAX) + 48, NUMBER_SIZE = 24 };
 
 /* The command line of the launcher. */
 struct command {
@@ -43,8 +43,9 @@ static void command_paths(struct command *command, const char *option, const cha
   }
 }
 
-static void command_make(struct command *command, const char *const *argv, const char *directory,
-                         const struct process_limits *limits, const struct isolation *isolation) {
+static void command_make(struct command *command, const char *const *argv,
+                         const char *const *folders, const struct process_limits *limits,
+                         const struct isolation *isolation) {
   *command = (struct command){.count = 0};
   command_add(command, isolation->launcher);
   command_number(command, "--parent", (uint64_t)getpid());
@@ -65,8 +66,7 @@ static void command_make(struct command *command, const char *const *argv, const
   if (isolation->landlock) {
     command_add(command, "--landlock");
   }
-  command_add(command, "--write");
-  command_add(command, directory);
+  command_paths(command, "--write", folders);
   command_paths(command, "--write", isolation->write);
   command_paths(command, "--read", isolation->read);
   command_add(command, "--");
@@ -160,7 +160,7 @@ static enum status process_launch(const struct command *command, int files[CHILD
 }
 
 enum status process_start(const char *const *argv, const char *output_path, const char *error_path,
-                          const char *directory, const struct process_limits *limits,
+                          const char *const *folders, const struct process_limits *limits,
                           const struct isolation *isolation, struct process *process,
                           struct error *error) {
   int flags = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW;
@@ -172,7 +172,7 @@ enum status process_start(const char *const *argv, const char *output_path, cons
     status = error_set(error, errno == ENOSPC || errno == EDQUOT ? STATUS_NO_SPACE : STATUS_IO,
                        NULL, "Cannot create %s: %s.", output_path, strerrordesc_np(errno));
   } else {
-    command_make(&command, argv, directory, limits, isolation);
+    command_make(&command, argv, folders, limits, isolation);
     status = process_launch(&command, files, process, error);
   }
   for (int i = 0; i < 3; i++) {

@@ -10,6 +10,8 @@
 #include "server/exec/isolation.h"
 #include "solver/base/error.h"
 
+enum { PROCESS_FOLDERS_MAX = 66 };
+
 /* Numbers of 0 set no limit. */
 struct process_limits {
   uint64_t memory_bytes; /* private writable memory of each process (RLIMIT_DATA) */
@@ -34,11 +36,12 @@ struct process_end {
 };
 
 /* Starts argv[0] (looked up in PATH when it has no slash), standard input empty, standard output
- * and error written to the two files, with `directory` as the folder it may write. The child is
- * ended when the calling thread ends, so the thread that starts a process also waits for it.
- * STATUS_NOT_FOUND when the program cannot be run, else STATUS_IO. */
+ * and error written to the two files, with `folders` (ended by NULL, at most PROCESS_FOLDERS_MAX)
+ * as those it may write; the first one is its home. The child is ended when the calling thread
+ * ends, so the thread that starts a process also waits for it. STATUS_NOT_FOUND when the program
+ * cannot be run, else STATUS_IO. */
 enum status process_start(const char *const *argv, const char *output_path, const char *error_path,
-                          const char *directory, const struct process_limits *limits,
+                          const char *const *folders, const struct process_limits *limits,
                           const struct isolation *isolation, struct process *process,
                           struct error *error);
 

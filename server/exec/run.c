@@ -1,4 +1,4 @@
-#include "server/exec/run.h"
+#include "server/exec/run_internal.h"
 
 #include <math.h>
 #include <signal.h>
@@ -9,53 +9,26 @@
 #include "server/base/file.h"
 #include "server/base/log.h"
 
-enum {
-  POLL_MS = 250,
-  GRACE_MS = 5000,
-  POLL_FIRST_MS = 20,
-  OUTPUT_BYTES_MAX = 256 << 20,
-  DESCRIPTORS_MAX = 512,
-  PROCESSES_MAX = 64,
-  MEASURE_MS = 1000,
-  MEASURE_SHARE = 50 /* times as long as a look takes is waited at least */
-};
-
-/* The paths of one attempt; room for the longest name after the data directory. */
-struct run_paths {
-  char directory[PATH_MAX], job[PATH_MAX], events[PATH_MAX], log[PATH_MAX];
-  char output[PATH_MAX]; /* what the worker prints, renamed once it is complete */
-  char result[PATH_MAX], artifacts[PATH_MAX];
-};
-
-/* State of the watch over a running worker. */
-struct watch {
-  int64_t timeout_at_ms;
-  int64_t measure_at_ms; /* when to look at the files' size next */
-  int64_t kill_at_ms;    /* 0: not asked to stop */
-  enum stop_cause cause;
-};
-
 void run_directory(int64_t job_id, int64_t attempt, char name[RUN_DIRECTORY_SIZE]) {
   snprintf(name, RUN_DIRECTORY_SIZE, "attempts/%lld-%lld", (long long)job_id, (long long)attempt);
 }
 
-static bool path_join(char path[PATH_MAX], const char *directory, const char *name) {
+bool run_path(char path[PATH_MAX], const char *directory, const char *name) {
   int length = snprintf(path, PATH_MAX, "%s/%s", directory, name);
   return length > 0 && length < PATH_MAX;
 }
 
-/* Creates the folder of the attempt with the job in it. */
-static enum status run_prepare(const struct run_settings *settings, const struct claim *claim,
-                               struct run_paths *paths, struct error *error) {
+enum status run_prepare(const struct run_settings *settings, const struct claim *claim,
+                        struct run_paths *paths, struct error *error) {
   char name[RUN_DIRECTORY_SIZE];
   run_directory(claim->job_id, claim->attempt, name);
-  if (!path_join(paths->directory, settings->data, name) ||
-      !path_join(paths->job, paths->directory, "job.json") ||
-      !path_join(paths->events, paths->directory, "events.jsonl") ||
-      !path_join(paths->log, paths->directory, "log.txt") ||
-      !path_join(paths->output, paths->directory, "result.json.part") ||
-      !path_join(paths->result, paths->directory, "result.json") ||
-      !path_join(paths->artifacts, paths->directory, "out")) {
+  if (!run_path(paths->directory, settings->data, name) ||
+      !run_path(paths->job, paths->directory, "job.json") ||
+      !run_path(paths->events, paths->directory, "events.jsonl") ||
+      !run_path(paths->log, paths->directory, "log.txt") ||
+      !run_path(paths->output, paths->directory, "result.json.part") ||
+      !run_path(paths->result, paths->directory, "result.json") ||
+      !run_path(paths->artifacts, paths->directory, "out")) {
     return error_set(error, STATUS_TOO_LARGE, NULL, "The path of the data directory is too long.");
   }
   file_remove_tree(paths->directory);
@@ -78,14 +51,13 @@ static enum status run_start(const struct run_settings *settings, const struct r
                                   .file_bytes = OUTPUT_BYTES_MAX,
                                   .descriptors = DESCRIPTORS_MAX,
                                   .processes = PROCESSES_MAX + settings->study_jobs};
-  return process_start(argv, paths->output, paths->log, paths->directory, &limits,
-                       settings->isolation, process, error);
+  const char *folders[] = {paths->directory, NULL};
+  return process_start(argv, paths->output, paths->log, folders, &limits, settings->isolation,
+                       process, error);
 }
 
-/* Whether the files of the attempt take more than they may. Looks about once a second, less often
- * when there are so many that looking takes long. */
-static bool files_full(const struct run_settings *settings, const struct run_paths *paths,
-                       struct watch *watch) {
+bool run_files_full(const struct run_settings *settings, const struct run_paths *paths,
+                    struct watch *watch) {
   int64_t before = clock_monotonic_ms();
   if (settings->files_limit_bytes == 0 || before < watch->measure_at_ms) {
     return false;
@@ -96,9 +68,8 @@ static bool files_full(const struct run_settings *settings, const struct run_pat
   return bytes > 0 && (uint64_t)bytes > settings->files_limit_bytes;
 }
 
-/* Asks the worker to end when somebody wants that, and insists after a while. */
-static void watch_step(struct watch *watch, const struct run_hooks *hooks, bool files_full,
-                       struct process *process) {
+void run_watch_step(struct watch *watch, const struct run_hooks *hooks, bool files_full,
+                    struct process *process) {
   int64_t now = clock_monotonic_ms();
   enum stop_cause wanted = hooks->stop_wanted(hooks->context);
   if (wanted == STOP_NONE && now >= watch->timeout_at_ms) {
@@ -140,15 +111,13 @@ static enum stop_cause run_watch(const struct run_settings *settings, const stru
     if (progress_poll(&reader, &progress)) {
       hooks->progressed(hooks->context, &progress);
     }
-    watch_step(&watch, hooks, files_full(settings, paths, &watch), process);
+    run_watch_step(&watch, hooks, run_files_full(settings, paths, &watch), process);
   }
   return watch.cause;
 }
 
-/* Makes the files that the result refers to durable, with the folders they are in: the database
- * must not name what a power failure can take away. */
-static enum status run_sync(const struct run_paths *paths, const struct outcome *outcome,
-                            struct error *error) {
+enum status run_sync(const struct run_paths *paths, const struct outcome *outcome,
+                     struct error *error) {
   char path[PATH_MAX];
   const char *name;
   json_t *size;
@@ -157,7 +126,7 @@ static enum status run_sync(const struct run_paths *paths, const struct outcome 
     return STATUS_OK;
   }
   json_object_foreach(outcome->artifacts, name, size) {
-    if (status == STATUS_OK && path_join(path, paths->artifacts, name)) {
+    if (status == STATUS_OK && run_path(path, paths->artifacts, name)) {
       status = file_sync(path, error);
     }
   }

@@ -8,7 +8,7 @@
 #include <stdint.h>
 #include <sys/types.h>
 
-enum { LAUNCH_PATHS_MAX = 64, LAUNCH_FAILED = 127 };
+enum { LAUNCH_PATHS_MAX = 128, LAUNCH_FAILED = 127 };
 
 /* What the command line asks for. Numbers of 0 set no limit. */
 struct launch {

@@ -186,16 +186,25 @@ static enum status attempt_apply(sqlite3 *db, const struct attempt_outcome *outc
 
 enum status store_attempt_finish(struct store *store, const struct attempt_outcome *outcome,
                                  enum job_state *state, struct error *error) {
-  enum job_state before = JOB_STATE_QUEUED;
-  int64_t failures = 0;
+  return store_attempts_finish(store, &outcome, 1, state, error);
+}
+
+enum status store_attempts_finish(struct store *store,
+                                  const struct attempt_outcome *const *outcomes, size_t count,
+                                  enum job_state *states, struct error *error) {
   enum status status = store_write_begin(store, error);
   if (status != STATUS_OK) {
     return status;
   }
-  status =
-      attempt_check(store->writer, outcome->job_id, outcome->attempt, &before, &failures, error);
-  if (status == STATUS_OK) {
-    status = attempt_apply(store->writer, outcome, before, failures, state, error);
+  for (size_t i = 0; i < count && status == STATUS_OK; i++) {
+    const struct attempt_outcome *outcome = outcomes[i];
+    enum job_state before = JOB_STATE_QUEUED;
+    int64_t failures = 0;
+    status =
+        attempt_check(store->writer, outcome->job_id, outcome->attempt, &before, &failures, error);
+    if (status == STATUS_OK) {
+      status = attempt_apply(store->writer, outcome, before, failures, &states[i], error);
+    }
   }
   return store_write_end(store, status, error);
 }

@@ -87,6 +87,14 @@ enum status store_record_read(sqlite3 *db, int64_t id, struct job_record *record
 enum status queue_charge(sqlite3 *db, int64_t job_id, int64_t attempt, int64_t now,
                          struct error *error);
 
+/* Makes the job of a claim `starting` under its attempt. In a write transaction. */
+enum status queue_take(struct store *store, const struct claim *claim, int64_t now,
+                       struct error *error);
+
+/* Takes the jobs that follow a claimed one in its chain, if it is of one: see store_claim. In a
+ * write transaction; what has been appended to the claim is freed with it. */
+enum status chain_claim(struct store *store, struct claim *claim, int64_t now, struct error *error);
+
 /* How a job that asks for it can be answered. */
 enum reuse { REUSE_NONE, REUSE_ANSWERED, REUSE_WAITS };
 

@@ -100,8 +100,8 @@ static enum status claim_next(struct store *store, struct claim *claim, struct e
   return STATUS_OK;
 }
 
-static enum status claim_take(struct store *store, const struct claim *claim, int64_t now,
-                              struct error *error) {
+enum status queue_take(struct store *store, const struct claim *claim, int64_t now,
+                       struct error *error) {
   sqlite3 *db = store->writer;
   enum status status = sql_run(db, error,
                                "UPDATE job SET state = 'starting', attempt = ?, started_ms = ?, "
@@ -134,17 +134,17 @@ enum status store_claim(struct store *store, struct claim *claim, bool *claimed,
     status = claim_next(store, claim, error);
   }
   if (status == STATUS_OK && claim->job_id != 0) {
-    status = claim_take(store, claim, now, error);
+    status = queue_take(store, claim, now, error);
+  }
+  if (status == STATUS_OK && claim->job_id != 0) {
+    status = chain_claim(store, claim, now, error);
   }
   status = store_write_end(store, status, error);
   *claimed = status == STATUS_OK && claim->job_id != 0;
   if (!*claimed) {
-    free(claim->document);
-    claim->document = NULL;
-    claim->job_id = 0;
-  }
-  if (status != STATUS_OK) {
-    claim->answered_id = 0;
+    int64_t answered = status == STATUS_OK ? claim->answered_id : 0;
+    claim_clear(claim);
+    claim->answered_id = answered;
   }
   return status;
 }

@@ -103,7 +103,10 @@ struct claim {
   double timeout_s;
   uint64_t memory_bytes; /* 0: no limit of its own */
   char *document;        /* malloc'd, owned by the holder of the claim */
-  int64_t answered_id;   /* when nothing was claimed, or 0: see store_claim */
+  struct claim *next;    /* others of its chain, claimed with it or (job_id is 0) answered */
+  int64_t before_id;     /* the one before in its chain, when it has succeeded, or 0 */
+  int64_t before_attempt;
+  int64_t answered_id; /* when nothing was claimed, or 0: see store_claim */
 };
 
 /* Takes the next job that may start, makes it `starting` under a new attempt number and fills
@@ -111,9 +114,14 @@ struct claim {
  * the submitter with the fewest running jobs; of equals, of the one who used least worker time of
  * late (half counts after ten minutes); of his the oldest. A job that may be answered with an equal
  * one's result is: then *claimed is false, claim->answered_id names it, and there may be more. One
- * that is equal to a running job waits for its end. */
+ * that is equal to a running job waits for its end. With a member of a chain those behind it are
+ * taken, too, up to the first that may not start now or has another limit of memory; those that an
+ * equal job answers are passed over. */
 enum status store_claim(struct store *store, struct claim *claim, bool *claimed,
                         struct error *error);
+
+/* Frees what a claim and those behind it own. */
+void claim_clear(struct claim *claim);
 
 /* The worker of an attempt runs: starting -> running. STATUS_CONFLICT when the attempt is no
  * longer the job's latest or the job is being cancelled. */
@@ -152,6 +160,12 @@ struct attempt_outcome {
  * latest or has ended before. */
 enum status store_attempt_finish(struct store *store, const struct attempt_outcome *outcome,
                                  enum job_state *state, struct error *error);
+
+/* The same for several attempts in one transaction; states[count]. After a failure nothing is
+ * written, for whichever of them it was. */
+enum status store_attempts_finish(struct store *store,
+                                  const struct attempt_outcome *const *outcomes, size_t count,
+                                  enum job_state *states, struct error *error);
 
 /* After a start: attempts that an earlier daemon left open are marked lost; their jobs are queued
  * again, those being cancelled become cancelled, those out of attempts failed. A study runs again

@@ -237,7 +237,8 @@ enum status store_study_add(struct store *store, int64_t id, int64_t attempt,
   do {
     status = member_insert(store, &members[done], parameters, error);
     done += status == STATUS_OK;
-  } while (status == STATUS_OK && done < count && clock_monotonic_ms() < until);
+  } while (status == STATUS_OK && done < count &&
+           (members[done].submission.chain_position > 0 || clock_monotonic_ms() < until));
   status = store_write_end(store, status, error);
   *stored = status == STATUS_OK ? done : 0;
   return status;

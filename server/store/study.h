@@ -66,7 +66,8 @@ struct study_member_row {
 };
 
 /* Stores members, as many as there is time for in one short transaction but at least one. *stored:
- * how many, from the first on. Members that are there are passed over. STATUS_CONFLICT as above. */
+ * how many, from the first on, chains as a whole. Members that are there are passed over.
+ * STATUS_CONFLICT as above. */
 enum status store_study_add(struct store *store, int64_t id, int64_t attempt,
                             const struct study_member_row *members, size_t count, size_t parameters,
                             size_t *stored, struct error *error);

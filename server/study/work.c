@@ -17,6 +17,8 @@ void work_destroy(struct work *work) {
   }
   columns_destroy(work->columns);
   study_search_destroy(work->search);
+  free(work->place);
+  free(work->order);
   study_release(&work->study);
   job_spec_release(&work->spec);
   free(work->submitter);
@@ -80,6 +82,9 @@ enum status work_begin(const struct conductor_settings *settings, struct study_c
     status = columns_create(job_reader_units(settings->reader), made->spec.document, &made->study,
                             &made->columns, error);
   }
+  if (status == STATUS_OK && !made->search) {
+    status = order_members(made->columns, &made->study, &made->place, &made->order, error);
+  }
   if (status == STATUS_OK) {
     status = note(settings, made, error);
   }
@@ -138,8 +143,21 @@ static enum status batch_fill(const struct conductor_settings *settings, struct 
                      .reuse = true,
                      .study_id = work->id,
                      .member = (int64_t)index,
-                     .chain = -1}};
+                     .chain = work->place ? (int64_t)work->place[index].chain : -1,
+                     .chain_position = work->place ? (int64_t)work->place[index].position : 0}};
   return STATUS_OK;
+}
+
+/* Where the next batch ends: with a chain, so that no worker finds one that is not complete. */
+static size_t batch_end(const struct work *work) {
+  size_t end = work->study.count;
+  if (end - work->added > BATCH) {
+    end = work->added + BATCH;
+    while (work->place && end > work->added + 1 && work->place[work->order[end]].position != 0) {
+      end--;
+    }
+  }
+  return end;
 }
 
 enum status work_add(const struct conductor_settings *settings, struct work *work, bool *more,
@@ -149,9 +167,8 @@ enum status work_add(const struct conductor_settings *settings, struct work *wor
   enum status status =
       batch.values ? STATUS_OK
                    : error_set(error, STATUS_NO_MEMORY, NULL, "No memory for a study's members.");
-  while (status == STATUS_OK && batch.count < BATCH &&
-         work->added + batch.count < work->study.count) {
-    status = batch_fill(settings, work, &batch, work->added + batch.count, error);
+  for (size_t k = work->added; status == STATUS_OK && k < batch_end(work); k++) {
+    status = batch_fill(settings, work, &batch, work->order ? work->order[k] : k, error);
   }
   if (status == STATUS_OK && batch.count > 0) {
     status = store_study_add(settings->store, work->id, work->attempt, batch.row, batch.count,

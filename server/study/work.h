@@ -6,6 +6,7 @@
 #include "server/store/study.h"
 #include "server/study/columns.h"
 #include "server/study/conductor.h"
+#include "server/study/order.h"
 #include "solver/job/study_optimise.h"
 
 struct work {
@@ -20,6 +21,8 @@ struct work {
   int priority;
   bool followed; /* the members that wait have this priority */
   uint64_t memory_bytes;
+  struct chain_place *place; /* of each member; NULL for a search, whose members come singly */
+  size_t *order;            /* the members in the order of their chains, in which they are stored */
   size_t added;             /* members that are stored, or that have been looked at */
   bool stored;              /* all of them */
   bool viewed;              /* the view of the study has its metrics */

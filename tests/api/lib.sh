@@ -207,6 +207,7 @@ while [ \$# -gt 1 ]; do
     --out) out=\$2; shift 2 ;;
     --events) events=\$2; shift 2 ;;
     --threads | --jobs) shift 2 ;;
+    --bundle) bundle=\$2; shift ;;
   esac
 done
 job=\$1
@@ -221,7 +222,23 @@ result() {
  "statistics":{},"provenance":{"version":"0.1.0","spec_hash":"$(printf '%064d' 0)"}}
 DOC
 }
-$1
+body() {
+  $1
+}
+if [ -z "\$bundle" ]; then
+  body
+  exit
+fi
+member=0
+jq -r '.members[]' "\$bundle" | while read -r folder; do
+  out=\$folder/out events=\$folder/events.jsonl job=\$folder/job.json
+  echo "{\"event\":\"begun\",\"member\":\$member}"
+  (body) > "\$folder/result.part"
+  code=\$?
+  mv "\$folder/result.part" "\$folder/result.json"
+  echo "{\"event\":\"done\",\"member\":\$member,\"exit\":\$code,\"cpu_s\":0.5,\"peak_memory_MB\":7}"
+  member=\$((member + 1))
+done
 END
   chmod +x "$WORK/solver"
   printf '%s' "$WORK/solver"

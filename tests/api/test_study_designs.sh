@@ -4,19 +4,14 @@
 . "$(dirname "$0")/lib.sh"
 
 # A stand-in that knows the number of the mass, without its unit, and diverges where the damping is high.
-cat > "$WORK/solver" <<'END'
-#!/bin/bash
-for job; do :; done
-text=$(< "$job")
+solver 'text=$(< "$job")
 [[ $text =~ \"mass\":\ \"([0-9.]+) ]]
 mass=${BASH_REMATCH[1]}
-status=succeeded reason='' metrics="{\"heavy_g\":$mass,\"peak_speed_m_s\":1.5}"
+status=succeeded reason= metrics="{\"heavy_g\":$mass,\"peak_speed_m_s\":1.5}"
 [[ $text =~ \"damping\":\ \"19 ]] && status=diverged reason=diverged metrics={}
-printf '{"status":"%s","reason":"%s","message":"","metrics":%s,"samples":[],"provenance":{"version":"0.1.0"}}' \
+printf "{\"status\":\"%s\",\"reason\":\"%s\",\"message\":\"\",\"metrics\":%s,\"samples\":[],\"provenance\":{\"version\":\"0.1.0\"}}" \
   "$status" "$reason" "$metrics"
-[ "$status" = succeeded ] || exit 3
-END
-chmod +x "$WORK/solver"
+[ "$status" = succeeded ] || exit 3' > /dev/null
 start_daemon --solver "$WORK/solver" --workers 2
 
 # Two studies: of all combinations, and spread over a range.
