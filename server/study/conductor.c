@@ -5,27 +5,14 @@
 
 #include "server/base/clock.h"
 #include "server/base/log.h"
-#include "server/exec/janitor.h"
 #include "server/exec/tally.h"
-#include "server/study/work.h"
+#include "server/study/conductor_internal.h"
 
 /* Between two looks at the studies, and when nothing was heard of any job. */
 enum { PACE_MS = 50, IDLE_MS = 1000 };
 
-/* Studies of one submitter that run at a time; members that follow, and that are deleted, in one
- * transaction; members that may be with workers. */
-enum { STUDIES_MAX = 4, FOLLOW_MAX = 200, DELETE_MAX = 50, RUNNING_MAX = 1024 };
-
-struct conductor {
-  struct conductor_settings settings;
-  struct pool *pool;
-  pthread_t thread;
-  bool started;
-  struct work *first; /* changed by the thread only, under the mutex */
-  pthread_mutex_t mutex;
-  pthread_cond_t news; /* guarded by the mutex, as what follows */
-  bool woken, stopping;
-};
+/* Studies of one submitter that run at a time. */
+enum { STUDIES_MAX = 4 };
 
 enum status conductor_create(const struct conductor_settings *settings,
                              struct conductor **conductor, struct error *error) {
@@ -42,14 +29,6 @@ enum status conductor_create(const struct conductor_settings *settings,
   pthread_condattr_destroy(&monotonic);
   *conductor = made;
   return STATUS_OK;
-}
-
-static void complain(int64_t id, const struct error *error) {
-  log_event(LOG_LEVEL_ERROR, error->message, LOG_NUMBER("study", id));
-}
-
-static void changed(struct conductor *conductor, int64_t id) {
-  conductor->settings.changed(conductor->settings.context, id);
 }
 
 /* ---- the list of works -------------------------------------------------------------------- */
@@ -101,45 +80,13 @@ static void works_sweep(struct conductor *conductor, const struct study_job *lis
 
 /* ---- one study ---------------------------------------------------------------------------- */
 
-/* Lets the members that wait follow; true when there may be more of them. */
-static bool follow(struct conductor *conductor, int64_t id, enum study_order order) {
-  struct error error;
-  int count = 0;
-  enum status status =
-      store_study_follow(conductor->settings.store, id, order, FOLLOW_MAX, &count, &error);
-  if (status != STATUS_OK) {
-    complain(id, &error);
-  }
-  if (count > 0 && order == STUDY_RELEASE) {
-    pool_wake(conductor->pool);
-  }
-  return count == FOLLOW_MAX;
-}
-
-/* Asks the workers of a study to end. */
-static void cancel_running(struct conductor *conductor, int64_t id) {
-  static const size_t room = RUNNING_MAX;
-  int64_t *ids = malloc(room * sizeof *ids);
-  enum job_state state;
-  size_t count = 0;
-  if (ids) {
-    store_study_running(conductor->settings.store, id, ids, room, &count, NULL);
-  }
-  for (size_t i = 0; i < count; i++) {
-    if (store_cancel(conductor->settings.store, ids[i], &state, NULL) == STATUS_OK) {
-      pool_cancel(conductor->pool, ids[i]);
-    }
-  }
-  free(ids);
-}
-
 /* Number of members that have not ended; -1 when that cannot be told. */
 static int64_t count_live(struct conductor *conductor, int64_t id, int64_t *ended,
                           struct error *error) {
   int64_t counts[JOB_STATE_COUNT], live = 0;
   *ended = 0;
   if (store_study_counts(conductor->settings.store, id, counts, error) != STATUS_OK) {
-    complain(id, error);
+    conductor_complain(id, error);
     return -1;
   }
   for (int s = 0; s < JOB_STATE_COUNT; s++) {
@@ -154,15 +101,16 @@ static int64_t count_live(struct conductor *conductor, int64_t id, int64_t *ende
 static bool step_cancel(struct conductor *conductor, int64_t id) {
   struct error error;
   int64_t ended;
-  bool more = follow(conductor, id, STUDY_CANCEL);
+  bool more = conductor_follow(conductor, id, STUDY_CANCEL);
   if (more) {
     return true;
   }
   if (count_live(conductor, id, &ended, &error) > 0) {
-    cancel_running(conductor, id);
+    conductor_cancel_running(conductor, id);
   } else if (store_study_cancelled(conductor->settings.store, id, NULL) == STATUS_OK) {
     log_event(LOG_LEVEL_INFO, "study cancelled", LOG_NUMBER("study", id));
-    changed(conductor, id);
+    conductor_changed(conductor, id);
+    conductor_changed_members(conductor, id);
   }
   return false;
 }
@@ -202,7 +150,7 @@ static void report_progress(struct conductor *conductor, struct work *work, int6
 static void view_make(struct conductor *conductor, int64_t id) {
   struct error error;
   if (store_study_view(conductor->settings.store, id, &error) != STATUS_OK) {
-    complain(id, &error);
+    conductor_complain(id, &error);
   }
 }
 
@@ -217,7 +165,7 @@ static void finish(struct conductor *conductor, struct work *work) {
     status = work_fail(&conductor->settings, work, &error, &error);
   }
   if (status != STATUS_OK) {
-    complain(work->id, &error);
+    conductor_complain(work->id, &error);
     return;
   }
   ended.state = job_state_word(state);
@@ -226,16 +174,19 @@ static void finish(struct conductor *conductor, struct work *work) {
   log_event(LOG_LEVEL_INFO, "study ended", LOG_NUMBER("study", work->id),
             LOG_TEXT("state", ended.state), LOG_NUMBER("wall_s", ended.wall_s));
   int64_t id = work->id;
+  if (work->out_of_time) {
+    conductor_changed_members(conductor, id);
+  }
   work_drop(conductor, work);
-  changed(conductor, id);
+  conductor_changed(conductor, id);
 }
 
 /* Whether the study has used up its time; members that wait or run are then cancelled. */
 static bool out_of_time(struct conductor *conductor, struct work *work) {
   double used_s = work->elapsed_s + 1e-3 * (double)(clock_monotonic_ms() - work->start_ms);
   work->out_of_time = work->out_of_time || (work->limit_s > 0 && used_s > work->limit_s);
-  if (work->out_of_time && !follow(conductor, work->id, STUDY_CANCEL)) {
-    cancel_running(conductor, work->id);
+  if (work->out_of_time && !conductor_follow(conductor, work->id, STUDY_CANCEL)) {
+    conductor_cancel_running(conductor, work->id);
   }
   return work->out_of_time;
 }
@@ -256,11 +207,11 @@ static bool step_add(struct conductor *conductor, struct work *work) {
     return more;
   }
   if (status != STATUS_CONFLICT) {
-    complain(work->id, &error);
+    conductor_complain(work->id, &error);
   }
   if (status != STATUS_CONFLICT && !store_failed(status) &&
       work_fail(&conductor->settings, work, &error, NULL) == STATUS_OK) {
-    changed(conductor, work->id);
+    conductor_changed(conductor, work->id);
   }
   return false;
 }
@@ -277,9 +228,9 @@ static bool step_search(struct conductor *conductor, struct work *work) {
   if (status == STATUS_OK || status == STATUS_CONFLICT) {
     return more;
   }
-  complain(work->id, &error);
+  conductor_complain(work->id, &error);
   if (!store_failed(status) && work_fail(&conductor->settings, work, &error, NULL) == STATUS_OK) {
-    changed(conductor, work->id);
+    conductor_changed(conductor, work->id);
     return true;
   }
   return false;
@@ -293,10 +244,10 @@ static bool step_run(struct conductor *conductor, const struct study_job *job) {
   if (!work) {
     return false;
   }
-  bool more = follow(conductor, job->id, STUDY_RELEASE);
+  bool more = conductor_follow(conductor, job->id, STUDY_RELEASE);
   if (!work->followed || work->priority != job->priority) {
     work->priority = job->priority; /* of those that are still to be stored */
-    work->followed = !follow(conductor, job->id, STUDY_PRIORITY);
+    work->followed = !conductor_follow(conductor, job->id, STUDY_PRIORITY);
     more = more || !work->followed;
   }
   bool waits = work->search && work->added == work->study.count; /* for the end of a round */
@@ -315,27 +266,6 @@ static bool step_run(struct conductor *conductor, const struct study_job *job) {
     report_progress(conductor, work, ended);
   }
   return more;
-}
-
-/* Deletes members of studies that were deleted; true when there may be more. */
-static bool step_delete(struct conductor *conductor) {
-  const struct conductor_settings *settings = &conductor->settings;
-  struct job_files files[DELETE_MAX];
-  struct error error;
-  size_t count = 0;
-  bool kept = true;
-  if (store_study_delete(settings->store, files, DELETE_MAX, &count, &error) != STATUS_OK) {
-    log_event(LOG_LEVEL_ERROR, "cannot delete members", LOG_TEXT("error", error.message));
-    return false;
-  }
-  for (size_t i = 0; i < count; i++) {
-    if (store_files_kept(settings->store, files[i].job_id, files[i].attempts, &kept, NULL) ==
-            STATUS_OK &&
-        !kept) {
-      janitor_remove_files(settings->data, files[i].job_id, files[i].attempts);
-    }
-  }
-  return count > 0;
 }
 
 /* ---- all of them -------------------------------------------------------------------------- */
@@ -357,7 +287,7 @@ static bool begin_next(struct conductor *conductor) {
   if (status == STATUS_OK) {
     work_enlist(conductor, work);
   } else if (status != STATUS_CONFLICT) {
-    complain(id, &error);
+    conductor_complain(id, &error);
     if (work && !store_failed(status)) {
       work_fail(&conductor->settings, work, &error, NULL);
     } else if (work) {
@@ -367,7 +297,7 @@ static bool begin_next(struct conductor *conductor) {
   if (status != STATUS_OK) {
     work_destroy(work);
   }
-  changed(conductor, id);
+  conductor_changed(conductor, id);
   return status == STATUS_OK;
 }
 
@@ -377,7 +307,7 @@ static bool look(struct conductor *conductor) {
   struct error error = {.status = STATUS_OK};
   size_t count = 0;
   bool more = begin_next(conductor);
-  more = step_delete(conductor) || more;
+  more = conductor_delete(conductor) || more;
   if (store_studies_live(conductor->settings.store, &list, &count, &error) != STATUS_OK) {
     log_event(LOG_LEVEL_ERROR, "cannot read the studies", LOG_TEXT("error", error.message));
     return false;
@@ -388,7 +318,7 @@ static bool look(struct conductor *conductor) {
     if (list[i].state == JOB_STATE_CANCELLING) {
       rest = step_cancel(conductor, list[i].id);
     } else if (list[i].state == JOB_STATE_HELD) {
-      rest = follow(conductor, list[i].id, STUDY_HOLD);
+      rest = conductor_follow(conductor, list[i].id, STUDY_HOLD);
     } else if (list[i].state == JOB_STATE_RUNNING) {
       rest = step_run(conductor, &list[i]);
     }

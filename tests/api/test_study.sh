@@ -85,9 +85,14 @@ fetch POST "/api/v1/jobs/$heavy/release"
 check "it is released" "200" "$CODE"
 check "with its members, and its priority is theirs" 3 \
   "$(wait_count "study_id = $heavy and state = 'queued' and priority = 7" 3)"
+curl -s -H 'Prefer: wait=60' -o "$WORK/waited" -w '%{time_total}' "$URL/api/v1/jobs/$member" > "$WORK/time" &
+waiting=$!
 fetch POST "/api/v1/jobs/$heavy/cancel" -H 'Prefer: wait=20'
 check "it can be cancelled" cancelled "$(field .state)"
 check "its members have ended with it" no "$(alive "$pid")"
+wait "$waiting"
+check "who waits for a member is told" cancelled "$(jq -r .state "$WORK/waited")"
+check "at once" true "$(jq '. < 30' "$WORK/time")"
 check "all of them" 4 "$(sql "select count(*) from job where study_id = $heavy and state = 'cancelled'")"
 fetch DELETE "/api/v1/jobs/$heavy"
 check "it is deleted" 204 "$CODE"
