@@ -26,10 +26,26 @@ export function sharpness() {
   return Math.min(Math.max(window.devicePixelRatio || 1, 1), 2);
 }
 
-// Calls `draw` before the next picture of the page, once however often it is asked for.
-export function eachFrame(draw) {
+// Calls `draw` before the next picture of the page, once however often it is asked for; while `place` is
+// out of sight, when it comes into sight.
+export function eachFrame(draw, place = null) {
   let isDue = false;
+  let isSeen = place === null;
+  let isMissed = false;
+  if (place) {
+    new IntersectionObserver((entries) => {
+      isSeen = entries.at(-1).isIntersecting;
+      if (isSeen && isMissed) {
+        isMissed = false;
+        draw();
+      }
+    }).observe(place);
+  }
   return () => {
+    if (!isSeen) {
+      isMissed = true;
+      return;
+    }
     if (!isDue) {
       isDue = true;
       requestAnimationFrame(() => {

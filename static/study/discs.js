@@ -15,6 +15,18 @@ export function discOf(radius) {
   return Float32Array.from(cells);
 }
 
+// The same without soft edges, for many marks: distances in an array of pixels `width` across.
+export function dotOf(radius, width) {
+  const cells = discOf(radius);
+  const steps = [];
+  for (let k = 0; k < cells.length; k += 3) {
+    if (cells[k + 2] > 0.4) {
+      steps.push(cells[k + 1] * width + cells[k]);
+    }
+  }
+  return Int32Array.from(steps);
+}
+
 // Lays a disc over the pixels (RGBA) at x, y with the colour at colours[at] to colours[at + 2]. It must
 // lie within the picture.
 export function stamp({ width, data }, cells, x, y, colours, at, opacity) {

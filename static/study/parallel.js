@@ -22,7 +22,7 @@ export class Parallel {
     this.marks = addCanvas(place);
     this.axisLayer = addCanvas(place);
     this.heads = [];
-    this.draw = eachFrame(() => this.paint());
+    this.draw = eachFrame(() => this.paint(), place);
     this.isDue = new Uint8Array(designs.count); // rows whose lines are to be added or taken out
     this.due = [];
     this.hovered = -1;

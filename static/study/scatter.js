@@ -2,7 +2,7 @@
 // design; designs of a Pareto front are ringed and joined.
 
 import { addCanvas, eachFrame, fit, followSize, sharpness } from './canvas.js';
-import { discOf, stamp } from './discs.js';
+import { discOf, dotOf, stamp } from './discs.js';
 import { pageColour, pageParts, rowShades, shades } from './paint.js';
 import { ticksOf } from './ticks.js';
 
@@ -10,6 +10,7 @@ const LEFT = 64;
 const RIGHT = 14;
 const TOP = 12;
 const BOTTOM = 46;
+const MANY = 3000; // designs from which marks have hard edges
 const NEAR = 10; // pixels within which a mark is meant
 
 export class Scatter {
@@ -18,11 +19,8 @@ export class Scatter {
     this.points = addCanvas(place);
     this.axes = addCanvas(place);
     this.marks = addCanvas(place);
-    this.draw = eachFrame(() => this.paint());
-    selection.listen(() => {
-      this.draw();
-      this.paintMarks();
-    });
+    this.draw = eachFrame(() => this.paint(), place);
+    selection.listen(() => this.draw());
     followSize(place, (width, height) => {
       this.width = width;
       this.height = height;
@@ -48,7 +46,7 @@ export class Scatter {
     if (!this.width) {
       return;
     }
-    this.scale = this.designs.count > 3000 ? 1 : sharpness();
+    this.scale = this.designs.count > MANY ? 1 : sharpness();
     this.spanX = this.width - LEFT - RIGHT;
     this.spanY = this.height - TOP - BOTTOM;
     fit(this.points, this.width, this.height, this.scale);
@@ -56,10 +54,24 @@ export class Scatter {
     fit(this.marks, this.width, this.height, sharpness());
     this.pixels = new ImageData(this.points.width, this.points.height);
     this.places = [this.x.places(), this.y.places()];
+    this.radius = (this.designs.count > MANY ? 1.6 : this.designs.count > 500 ? 2.4 : 3.6) * this.scale;
+    this.base = null;
+    this.findSpots();
     this.shades = rowShades(this.designs, this.colour);
     this.paintAxes();
     this.paintMarks();
     this.draw();
+  }
+
+  // Where each design is in the pixels: their index, -1 without a value.
+  findSpots() {
+    const { places: [px, py], scale, points: { width } } = this;
+    this.spots = new Int32Array(this.designs.count).fill(-1);
+    for (let row = 0; row < this.spots.length; row++) {
+      if (px[row] === px[row] && py[row] === py[row]) {
+        this.spots[row] = Math.round(this.top(py[row]) * scale) * width + Math.round(this.left(px[row]) * scale);
+      }
+    }
   }
 
   left(place) {
@@ -82,28 +94,57 @@ export class Scatter {
     if (!this.pixels) {
       return;
     }
-    const { designs: { count }, selection, places: [px, py], scale, pixels } = this;
-    const colours = shades();
+    const { designs: { count }, selection, pixels } = this;
+    if (selection.count < count) {
+      this.base ??= this.drawBase();
+      pixels.data.set(this.base);
+    } else {
+      pixels.data.fill(0);
+    }
+    this.drawRows(pixels, selection.rows());
+    this.points.getContext('2d').putImageData(pixels, 0, 0);
+    this.paintMarks();
+  }
+
+  // All designs, quietly, below those that are selected.
+  drawBase() {
+    const { width, height } = this.pixels;
+    const pixels = new ImageData(width, height);
     const quiet = pageParts('plot-quiet');
-    const size = (count > 3000 ? 1.6 : count > 500 ? 2.4 : 3.6) * scale;
-    const cells = discOf(size);
-    const small = discOf(size * 0.7);
-    pixels.data.fill(0);
-    const isSome = selection.count < count;
-    for (let pass = isSome ? 0 : 1; pass < 2; pass++) {
-      for (let row = 0; row < count; row++) {
-        if (selection.has(row) === (pass === 1) && px[row] === px[row] && py[row] === py[row]) {
-          const x = Math.round(this.left(px[row]) * scale);
-          const y = Math.round(this.top(py[row]) * scale);
-          if (pass === 0) {
-            stamp(pixels, small, x, y, quiet, 0, 0.55);
-          } else {
-            stamp(pixels, cells, x, y, colours, 3 * this.shades[row], 0.9);
-          }
+    const cells = discOf(this.radius * 0.7);
+    for (let row = 0; row < this.designs.count; row++) {
+      if (this.spots[row] >= 0) {
+        stamp(pixels, cells, this.spots[row] % width, Math.floor(this.spots[row] / width), quiet, 0, 0.55);
+      }
+    }
+    return pixels.data;
+  }
+
+  drawRows(pixels, rows) {
+    const { spots, shades: shaded } = this;
+    const { width } = pixels;
+    const colours = shades();
+    if (this.designs.count <= MANY) {
+      const cells = discOf(this.radius);
+      for (const row of rows) {
+        if (spots[row] >= 0) {
+          stamp(pixels, cells, spots[row] % width, Math.floor(spots[row] / width), colours, 3 * shaded[row], 0.9);
+        }
+      }
+      return;
+    }
+    const out = new Uint32Array(pixels.data.buffer);
+    const steps = dotOf(this.radius, width);
+    for (const row of rows) {
+      const spot = spots[row];
+      if (spot >= 0) {
+        const c = 3 * shaded[row];
+        const colour = 255 << 24 | colours[c + 2] << 16 | colours[c + 1] << 8 | colours[c];
+        for (let k = 0; k < steps.length; k++) {
+          out[spot + steps[k]] = colour;
         }
       }
     }
-    this.points.getContext('2d').putImageData(pixels, 0, 0);
   }
 
   context(canvas) {

@@ -14,8 +14,8 @@ export class DesignTable {
     this.head = make('thead');
     this.body = make('tbody');
     table.replaceChildren(this.head, this.body);
-    this.draw = eachFrame(() => this.fill());
-    this.order = eachFrame(() => this.arrange());
+    this.draw = eachFrame(() => this.fill(), scroll);
+    this.order = eachFrame(() => this.arrange(), scroll);
     this.rows = new Uint32Array(0);
     this.lines = [];
     selection.listen(() => this.order());
