@@ -32,50 +32,63 @@ function theme() {
   };
 }
 
-export class Chart {
-  // place: an element of a size of its own.
+class Chart {
   constructor(place) {
     this.place = place;
     this.build = null;
     this.chart = null;
-    new ResizeObserver(() => this.chart?.resize()).observe(place);
+    this.onClick = null; // gets the events of ECharts
+    new ResizeObserver(() => this.chart && this.draw(true)).observe(place);
     dark.addEventListener('change', () => this.renew());
   }
 
-  // build: makes the options with the colours of the time. text: what the chart shows, in words.
+  // build: makes the options with the colours and the size of the time. text: what the chart shows, in
+  // words.
   async show(build, text) {
     this.build = build;
     this.place.setAttribute('role', 'img');
     this.place.setAttribute('aria-label', text);
-    const { init } = await load();
-    this.init = init;
-    this.chart ??= init(this.place, theme(), { renderer: 'canvas' });
-    this.draw();
+    this.library = await load();
+    if (!this.chart) {
+      this.start();
+    }
+    this.draw(false);
   }
 
-  draw() {
+  start() {
+    this.chart = this.library.init(this.place, theme(), { renderer: 'canvas' });
+    this.chart.on('click', (event) => this.onClick?.(event));
+  }
+
+  draw(hasNewSize) {
+    if (hasNewSize) {
+      this.chart.resize();
+    }
     this.chart.setOption({ animation: false, ...this.build() }, { notMerge: true });
   }
 
   // Colours belong to the chart from its beginning.
   renew() {
     if (this.chart) {
-      const listeners = this.listeners ?? [];
       this.chart.dispose();
-      this.chart = this.init(this.place, theme(), { renderer: 'canvas' });
-      listeners.forEach(([event, listener]) => this.chart.on(event, listener));
-      this.draw();
+      this.start();
+      this.draw(false);
     }
-  }
-
-  on(event, listener) {
-    this.listeners = [...(this.listeners ?? []), [event, listener]];
-    this.chart.on(event, listener);
   }
 
   picture() {
     return this.chart?.getDataURL({ pixelRatio: 2, backgroundColor: pageColour('card') });
   }
+}
+
+const charts = new WeakMap();
+
+// The chart of a place, an element of a size of its own: always the same one.
+export function chartOf(place) {
+  if (!charts.has(place)) {
+    charts.set(place, new Chart(place));
+  }
+  return charts.get(place);
 }
 
 // Calls `start` once when a part of the page first comes near the window.

@@ -31,6 +31,9 @@ const FILES = [['All designs (CSV)', () => studyUrl('/export.csv')], ['For Optun
 export function setUpDownloads(designs, selection, charts, lines) {
   const selected = make('button', { type: 'button' }, 'Selected designs (CSV)');
   selected.addEventListener('click', () => {
+    if (!selection()) {
+      return;
+    }
     const url = URL.createObjectURL(new Blob([selectedTable(designs(), selection())], { type: 'text/csv' }));
     save(url, `study-${id}-selected.csv`);
     setTimeout(() => URL.revokeObjectURL(url), 1000);

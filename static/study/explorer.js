@@ -49,25 +49,26 @@ export class Explorer {
   }
 
   setUpParallel() {
-    const place = find('parallel-plot');
-    place.replaceChildren();
+    const frame = find('parallel-plot');
+    const place = make('div', { class: 'frame' });
+    frame.replaceChildren(place);
     const columns = this.columnsOf('axes', AXES);
     this.parallel = new Parallel(place, this.designs, this.selection, {
       columns, colour: this.metric, onHover: (row, event) => this.point(row, event),
       onChange: () => {
         this.address.set('axes', this.parallel.columns.map(({ key }) => key).join(','));
         this.address.set('log', this.designs.columns.filter(({ isLogarithmic }) => isLogarithmic).map(({ key }) => key).join(','));
-        place.setAttribute('aria-label', axesText(this.designs, this.parallel.columns));
+        frame.setAttribute('aria-label', axesText(this.designs, this.parallel.columns));
         this.scatter?.arrange();
       },
     });
-    place.setAttribute('aria-label', axesText(this.designs, columns));
+    frame.setAttribute('aria-label', axesText(this.designs, columns));
     new Picker(find('axes-picker'), this.designs, columns, (chosen) => chosen.length > 1 && this.parallel.setColumns(chosen));
   }
 
   setUpScatter() {
-    const place = find('scatter-plot');
-    place.replaceChildren();
+    const place = make('div', { class: 'frame' });
+    find('scatter-plot').replaceChildren(place);
     const { parameters, byKey } = this.designs;
     const others = this.designs.metrics.filter((column) => column.varies && column !== this.metric);
     const x = byKey.get(this.address.get('x')) ?? others.find(({ key }) => /^mass/.test(key)) ?? parameters.find(({ varies }) => varies) ?? parameters[0] ?? this.metric;

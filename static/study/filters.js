@@ -8,12 +8,12 @@ export class Filters {
     Object.assign(this, { designs, selection, address });
     const input = find('filter');
     input.value = address.get('filter');
-    input.addEventListener('input', () => this.read());
-    find('clear').addEventListener('click', () => {
+    input.oninput = () => this.read();
+    find('clear').onclick = () => {
       input.value = '';
       this.read();
       this.selection.clear();
-    });
+    };
     selection.listen(() => this.follow());
   }
 
@@ -64,9 +64,9 @@ export class Filters {
       let chip = place.children[i];
       if (!chip) {
         chip = make('button', { type: 'button', class: 'chip' });
-        chip.addEventListener('click', () => this.selection.limit(chip.dataset.key, null));
         place.append(chip);
       }
+      chip.onclick = () => this.selection.limit(key, null);
       chip.dataset.key = key;
       chip.title = 'Take this range away';
       setText(chip, `${column.title}: ${ends} ×`);

@@ -2,12 +2,12 @@
 
 import { find } from '../dom.js';
 import { number } from '../format.js';
-import { Chart } from './chart.js';
+import { chartOf } from './chart.js';
 import { pageColour, SERIES } from './paint.js';
 
 export class History {
   constructor() {
-    this.chart = new Chart(find('history-plot'));
+    this.chart = chartOf(find('history-plot'));
   }
 
   // Whether less is better of the metric decides what is best so far.

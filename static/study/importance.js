@@ -2,7 +2,7 @@
 
 import { find } from '../dom.js';
 import { number } from '../format.js';
-import { Chart } from './chart.js';
+import { chartOf } from './chart.js';
 import { pageColour, SERIES } from './paint.js';
 import { Panel } from './panel.js';
 import { analysis } from './source.js';
@@ -85,7 +85,7 @@ function effectsOption({ metric, main }, shown, place) {
 
 // metric(): the key of the metric that the page is about. onShare(text): what decides it most.
 export function setUpImportance(metric, onShare) {
-  const bars = new Chart(find('importance-plot'));
+  const bars = chartOf(find('importance-plot'));
   const importance = new Panel('importance', () => analysis('importance', { metric: metric() }), async (answer) => {
     const [first] = answer.parameters;
     if (first) {
@@ -94,7 +94,7 @@ export function setUpImportance(metric, onShare) {
     const text = answer.parameters.map((one) => `${one.title} ${percent(one.total)}`).join(', ');
     await bars.show(() => importanceOption(answer), `Shares of the variance of ${answer.metric.title}: ${text}`);
   });
-  const lines = new Chart(find('effects-plot'));
+  const lines = chartOf(find('effects-plot'));
   const effects = new Panel('effects', () => analysis('effects', { metric: metric() }), async (answer) => {
     const size = ({ mean }) => Math.max(...mean) - Math.min(...mean);
     const shown = [...answer.main].sort((a, b) => size(b) - size(a)).slice(0, 6);

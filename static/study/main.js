@@ -1,5 +1,6 @@
 // The page of a study. What is seen — metric, axes, ranges, sort, slices — is in the address.
 
+import { jobUrl, request } from '../api.js';
 import { find, make, setText } from '../dom.js';
 import { byImportance, number } from '../format.js';
 import { showProblem } from '../problem.js';
@@ -23,9 +24,11 @@ const history = new History();
 const charts = new Map();
 let designs = null;
 let explorer = null;
-let panels = [];
+let panels = []; // that ask the daemon
+let parts = []; // that know the designs
 let metric = '';
 let study = null;
+let wanted = {}; // objective and ranking, as the study's document has them
 
 // Metrics that say how well a solve went are of less interest than what it found.
 function metricsByInterest() {
@@ -78,19 +81,33 @@ function showHistory() {
   const isOptimisation = study.sampling === 'optimise';
   find('history').hidden = !isOptimisation || !column;
   if (isOptimisation && column) {
-    history.show(designs, column, Boolean(study.objective?.maximise));
+    history.show(designs, column, wanted.objective?.maximise !== undefined);
   }
 }
 
 // Two objectives that may be at odds: the metric most, and mass, stress or stretch least.
 function usualObjectives() {
   const metrics = metricsByInterest();
+  if (metric === '') {
+    return [];
+  }
   const cost = metrics.find(({ key }) => key !== metric && /^(mass|max_|cavity_volume)/.test(key)) ?? metrics.find(({ key }) => key !== metric);
   return [['max', metric], ...(cost ? [['min', cost.key]] : [])];
 }
 
+// Without designs there is nothing to explore.
+function showParts() {
+  for (const part of document.querySelectorAll('#study > .tiles, #study > .card:not(#history, #failures, #downloads), #study > .pair')) {
+    part.hidden = designs.count === 0;
+  }
+}
+
 // What of the page needs the designs: made anew when their columns change.
 function setUp() {
+  showParts();
+  if (designs.count === 0) {
+    return;
+  }
   setUpMetric();
   explorer = new Explorer(designs, address, designs.byKey.get(metric));
   const key = () => metric;
@@ -101,9 +118,10 @@ function setUp() {
   const pareto = new Pareto(designs, address, usual, {
     onFront: (rows, keys) => explorer.showFront(rows, keys), onPick: (row, on) => explorer.pick(row, on), onHover: (row) => explorer.point(row),
   });
-  const ranking = new Ranking(designs, address, usual.map(([way, name]) => [way, name, 1]), study.has_ranking === true);
-  new Search(designs, address, { metric, goal: usual[1]?.[1] ?? metric });
-  panels = [importance, effects, quality, slice.panel, pareto.panel, ranking.panel];
+  const ranking = new Ranking(designs, address, usual.map(([way, name]) => [way, name, 1]), Boolean(wanted.ranking));
+  const search = new Search(designs, address, { metric, goal: usual[1]?.[1] ?? metric });
+  parts = [slice, pareto, ranking, search];
+  panels = [importance, effects, quality, slice.panel, pareto.panel, ranking];
   for (const [name, chart] of [['slice', slice.chart], ['history', history.chart]]) {
     charts.set(name, chart);
   }
@@ -135,13 +153,29 @@ async function takeDesigns(isOver) {
   const next = new Designs(await columns());
   const isSame = explorer && next.columns.map(({ key }) => key).join() === designs.columns.map(({ key }) => key).join();
   designs = next;
-  if (isSame && !isOver) {
+  if (isSame) {
     explorer.take(designs);
+    parts.forEach((part) => {
+      part.designs = designs;
+    });
     showTiles();
     showHistory();
+    if (isOver) {
+      panels.forEach((panel) => panel.renew());
+    }
   } else {
     explorer?.retire();
     setUp();
+  }
+}
+
+// What the study is after. Its document may be long, so nothing waits for it.
+async function readDocument() {
+  const { objective, ranking } = await request(jobUrl(study.id, '/document'));
+  wanted = { objective, ranking };
+  showHistory();
+  if (ranking) {
+    panels.at(-1)?.offerPreset();
   }
 }
 
@@ -160,9 +194,12 @@ async function start() {
   const status = new Status(takeDesigns);
   status.start(study);
   setUp();
-  setUpDownloads(() => designs, () => explorer.selection, charts, curlLines);
-  dark.addEventListener('change', () => explorer.recolour(designs.byKey.get(metric)));
-  requestAnimationFrame(() => setTimeout(() => performance.mark('study-usable')));
+  setUpDownloads(() => designs, () => explorer?.selection, charts, curlLines);
+  dark.addEventListener('change', () => explorer?.recolour(designs.byKey.get(metric)));
+  requestAnimationFrame(() => setTimeout(() => {
+    performance.mark('study-usable');
+    readDocument().catch(() => {}); // without it the page is only less well informed
+  }));
 }
 
 start();

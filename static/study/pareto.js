@@ -17,7 +17,6 @@ export class Pareto {
     Object.assign(this, { designs, address, onFront, onPick, onHover });
     const given = readObjectives(address.get('pareto'), designs);
     this.objectives = new Map((given.length > 0 ? given : usual).map(([direction, key]) => [key, direction]));
-    this.rowOf = new Map(designs.jobs.map((job, row) => [job, row]));
     this.showChoice();
     this.panel = new Panel('pareto', () => this.ask(), (answer) => this.show(answer));
   }
@@ -53,6 +52,7 @@ export class Pareto {
   }
 
   show(answer) {
+    this.rowOf = new Map(this.designs.jobs.map((job, row) => [job, row]));
     const first = answer.designs.filter(({ layer }) => layer === 1);
     const [head] = answer.objectives;
     const sign = head.direction === 'max' ? -1 : 1;
@@ -60,11 +60,11 @@ export class Pareto {
     const wanted = answer.objectives.map(({ direction, title }) => `${direction === 'max' ? 'most' : 'least'} ${title}`).join(', ');
     find('pareto-text').textContent = `${first.length} of ${answer.compared} designs are beaten by none (${wanted}).`;
     const heading = answer.objectives.map(({ title, unit }) => make('th', { scope: 'col', class: 'number' }, title, make('span', { class: 'unit' }, unit || '\u00a0')));
-    const rows = first.slice(0, 100).map((design) => this.line(design));
+    const known = first.filter(({ job }) => this.rowOf.has(job)); // others came since
+    const rows = known.slice(0, 100).map((design) => this.line(design));
     find('pareto-table').replaceChildren(make('thead', {}, make('tr', {}, make('th', { scope: 'col' }, make('span', { class: 'quiet' }, 'Pick')), make('th', { scope: 'col' }, 'Design'), ...heading)),
       make('tbody', {}, ...rows));
-    const rowsOfFront = first.map(({ job }) => this.rowOf.get(job)).filter((row) => row !== undefined);
-    this.onFront(rowsOfFront, answer.objectives.map(({ key }) => key));
+    this.onFront(known.map(({ job }) => this.rowOf.get(job)), answer.objectives.map(({ key }) => key));
   }
 
   line(design) {

@@ -2,7 +2,7 @@
 
 import { find } from '../dom.js';
 import { number } from '../format.js';
-import { Chart } from './chart.js';
+import { chartOf } from './chart.js';
 import { pageColour, SERIES } from './paint.js';
 import { Panel } from './panel.js';
 import { analysis } from './source.js';
@@ -31,7 +31,7 @@ function option({ metric, left_out: { known, predicted, deviation, jobs } }) {
 }
 
 export function setUpQuality(metric, onQuality) {
-  const chart = new Chart(find('quality-plot'));
+  const chart = chartOf(find('quality-plot'));
   return new Panel('quality', () => analysis('surrogate', { metric: metric() }), async (answer) => {
     const { r2, within_95: within, points, complete } = answer.surrogate;
     onQuality(r2);

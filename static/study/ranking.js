@@ -12,19 +12,37 @@ export class Ranking {
   // usual: [["max", key, weight]] unless the address has others; hasPreset: the study ranks by itself.
   constructor(designs, address, usual, hasPreset) {
     Object.assign(this, { designs, address });
+    this.hasPreset = hasPreset;
     const given = address.list('rank').map((part) => part.split(':')).filter(([, key]) => designs.byKey.has(key));
     this.criteria = new Map((given.length > 0 ? given : usual).map(([way, key, weight]) => [key, [way, Number(weight) || 1]]));
     this.isPreset = hasPreset && given.length === 0;
-    const preset = find('ranking-preset');
-    preset.closest('label').hidden = !hasPreset;
-    preset.checked = this.isPreset;
-    preset.addEventListener('change', () => {
-      this.isPreset = preset.checked;
+    this.isChosen = given.length > 0;
+    this.showPreset();
+    find('ranking-preset').onchange = () => {
+      this.isPreset = find('ranking-preset').checked;
       this.showWeights();
-      this.panel.renew();
-    });
+      this.renew();
+    };
     this.showWeights();
     this.panel = new Panel('ranking', () => this.ask(), (answer) => this.show(answer));
+  }
+
+  showPreset() {
+    find('ranking-preset').closest('label').hidden = !this.hasPreset;
+    find('ranking-preset').checked = this.isPreset;
+  }
+
+  // The study has a ranking of its own: it is shown unless somebody chose weights.
+  offerPreset() {
+    this.hasPreset = true;
+    this.isPreset = !this.isChosen;
+    this.showPreset();
+    this.showWeights();
+    this.renew();
+  }
+
+  renew() {
+    return this.panel.renew();
   }
 
   showWeights() {

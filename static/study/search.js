@@ -37,10 +37,10 @@ export class Search {
     find('search-goal').value = address.get('goal', usual.goal);
     find('search-limit').value = address.get('limit');
     find('search-way').value = address.get('way', 'least');
-    find('search-form').addEventListener('submit', (event) => {
+    find('search-form').onsubmit = (event) => {
       event.preventDefault();
       this.run();
-    });
+    };
     if (address.get('limit')) {
       this.run();
     }

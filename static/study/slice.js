@@ -3,8 +3,8 @@
 
 import { find, make } from '../dom.js';
 import { number } from '../format.js';
-import { Chart } from './chart.js';
-import { dark, pageColour, shadeText } from './paint.js';
+import { chartOf } from './chart.js';
+import { pageColour, shadeText } from './paint.js';
 import { Panel } from './panel.js';
 import { analysis } from './source.js';
 import { tickText } from './ticks.js';
@@ -71,7 +71,7 @@ export class Slice {
   // metric(): key of the metric. onChoose(values): a design on the slice, pointer to value.
   constructor(designs, address, metric, onChoose) {
     Object.assign(this, { designs, address, metric, onChoose });
-    this.chart = new Chart(find('slice-plot'));
+    this.chart = chartOf(find('slice-plot'));
     this.at = new Map(); // of the sliders: pointer -> value
     for (const [name, value] of address.query) {
       if (name.startsWith('at.') && designs.byKey.has(name.slice(3))) {
@@ -80,7 +80,6 @@ export class Slice {
     }
     this.setUpSelects();
     this.panel = new Panel('slice', () => this.ask(), (answer) => this.draw(answer));
-    dark.addEventListener('change', () => this.chart.renew());
   }
 
   setUpSelects() {
@@ -104,9 +103,9 @@ export class Slice {
       this.showSliders();
       this.panel.renew();
     };
-    find('slice-x').addEventListener('change', follow);
-    find('slice-y').addEventListener('change', follow);
-    find('slice-shows').addEventListener('change', () => this.answer && this.draw(this.answer));
+    find('slice-x').onchange = follow;
+    find('slice-y').onchange = follow;
+    find('slice-shows').onchange = () => this.answer && this.draw(this.answer);
     this.showSliders();
   }
 
@@ -161,10 +160,7 @@ export class Slice {
     const shows = find('slice-shows').value;
     const text = `${answer.metric.title} expected over ${answer.x.title}${isMap ? ` and ${answer.y.title}` : ''}`;
     await this.chart.show(() => (isMap ? mapOption(answer, shows) : lineOption(answer)), text);
-    if (!this.isListening) {
-      this.isListening = true;
-      this.chart.on('click', (event) => this.choose(event));
-    }
+    this.chart.onClick = (event) => this.choose(event);
   }
 
   // The design at a place of the map.

@@ -25,6 +25,9 @@ let version = 0; // of the data
 
 // An analysis, kept until there are new data.
 export function analysis(name, query) {
+  if (query.metric === '') {
+    return Promise.reject(new Error('No design has a metric yet.'));
+  }
   const url = studyUrl(`/${name}`, query);
   if (!kept.has(url)) {
     const asked = request(url);

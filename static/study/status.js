@@ -9,7 +9,6 @@ import { extend, forget, id, summary } from './source.js';
 
 const GROUPS = [['succeeded', ['succeeded']], ['failed', ['failed', 'timed_out', 'cancelled']],
   ['running', ['starting', 'running', 'cancelling', 'retry_wait']], ['queued', ['queued', 'held']]];
-const GROWING = ['sobol', 'halton'];
 const EVERY_MS = 2000; // between two looks at the designs of a running study
 
 function counted(counts, states) {
@@ -58,8 +57,12 @@ export class Status {
 
   async act(action) {
     try {
-      await action();
+      const answer = await action();
       showProblem(find('action-problem'), null);
+      if (answer.id && String(answer.id) !== id) { // a study never changes: another one goes on with it
+        window.location.assign(`/studies/${answer.id}`);
+        return;
+      }
     } catch (problem) {
       showProblem(find('action-problem'), problem);
     }
@@ -89,7 +92,7 @@ export class Status {
     find('shares').setAttribute('aria-valuenow', Math.round(100 * done / total));
   }
 
-  showActions({ state, counts = {}, sampling, members }) {
+  showActions({ state, counts = {}, extendable, members }) {
     const failed = counted(counts, ['failed', 'timed_out', 'cancelled']);
     const wanted = [['cancel', 'Cancel', isActive(state) || state === 'held'], ['hold', 'Hold', isActive(state)],
       ['release', 'Release', state === 'held'], ['retry', 'Retry failed designs', !isActive(state) && failed > 0]].filter(([, , applies]) => applies);
@@ -102,7 +105,7 @@ export class Status {
         return button;
       }));
     }
-    const canGrow = GROWING.includes(sampling) && !isActive(state);
+    const canGrow = extendable && !isActive(state);
     find('extend-form').hidden = !canGrow;
     if (canGrow && document.activeElement !== find('extend-size') && this.grownFrom !== members) {
       this.grownFrom = members;
@@ -113,8 +116,9 @@ export class Status {
 
   showFailures(failures) {
     find('failures').hidden = failures.length === 0;
-    find('failure-list').replaceChildren(...failures.map(({ reason, reason_code: code, count, message, jobs = [] }) =>
-      make('li', {}, make('strong', {}, `${count} × ${stateWord(reason ?? code ?? '')}`), message ? ` ${message} ` : ' ',
-        ...jobs.slice(0, 12).flatMap((job, i) => [i > 0 ? ', ' : '', make('a', { href: `/jobs/${job}` }, `job ${job}`)]))));
+    find('failure-list').replaceChildren(...failures.map(({ reason_code: code, count, jobs }) =>
+      make('li', {}, make('strong', {}, `${count} × ${stateWord(code)}`), ': ',
+        ...jobs.flatMap((job, i) => [i > 0 ? ', ' : '', make('a', { href: `/jobs/${job}` }, `job ${job}`)]),
+        count > jobs.length ? ' and more' : '')));
   }
 }

@@ -19,7 +19,7 @@ export class DesignTable {
     this.rows = new Uint32Array(0);
     this.lines = [];
     selection.listen(() => this.order());
-    scroll.addEventListener('scroll', () => this.draw(), { passive: true });
+    scroll.onscroll = () => this.draw();
     this.body.addEventListener('pointerover', (event) => {
       const line = event.target.closest('tr[data-row]');
       this.onHover(line ? Number(line.dataset.row) : -1);

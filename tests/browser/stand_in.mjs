@@ -44,8 +44,10 @@ export function columnsOf(count) {
     columns: [...PARAMETERS.map(number('parameter')),
       { key: '/material', title: 'material', unit: '', role: 'parameter', categorical: true, words: MATERIALS },
       ...METRICS.map(number('metric'))],
+    members: states.map((_, i) => i),
     jobs: states.map((_, i) => 1000 + i),
     states,
+    reasons: states.map((state) => (state === 'failed' ? 'diverged' : '')),
     names: states.map((_, i) => `design ${i}`),
     values,
   };
@@ -53,9 +55,8 @@ export function columnsOf(count) {
 
 export function summaryOf(count) {
   const failed = Math.floor(count / 50);
-  return { id: 7, name: 'walls, gap and material of a finger', state: 'succeeded', sampling: 'sobol', members: count,
-    counts: { succeeded: count - failed, failed },
-    failures: [{ reason_code: 'diverged', count: failed, message: 'The solve stopped at 31 kPa.', jobs: [1049, 1099, 1149] }] };
+  return { id: 7, name: 'walls, gap and material of a finger', state: 'succeeded', sampling: 'sobol', extendable: true, members: count,
+    stored: count, counts: { succeeded: count - failed, failed }, failures: [{ reason_code: 'diverged', count: failed, jobs: [1049, 1099, 1149] }] };
 }
 
 const surrogate = { method: 'Gaussian process, Matern 5/2', points: 600, complete: 9800, succeeded: 9800, members: 10000, r2: 0.987, within_95: 0.94 };
@@ -142,6 +143,7 @@ export function studyRoutes(count) {
   const text = JSON.stringify(document);
   const parts = { importance, effects, slice, surrogate: quality, pareto, ranking, search };
   return {
+    '**/api/v1/jobs/7/document': (route) => route.fulfill({ contentType: 'application/json', body: '{"kind":"study"}' }),
     '**/api/v1/studies/7**': (route) => {
       const url = new URL(route.request().url());
       const part = url.pathname.split('/').at(5) ?? '';
