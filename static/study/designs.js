@@ -30,7 +30,9 @@ export class Column {
     this.words = description.categorical ? [...(description.words || [])] : null;
     this.data = Float64Array.from(values, (value) => this.numberOf(value));
     [this.low, this.high] = this.words ? [-0.5, Math.max(this.words.length - 0.5, 0.5)] : extent(this.data);
-    this.varies = this.words ? new Set(this.data.filter((v) => v === v)).size > 1 : this.low < this.high;
+    // what differs by rounding alone does not vary
+    this.varies = this.words ? new Set(this.data.filter((v) => v === v)).size > 1
+      : this.high - this.low > 1e-6 * Math.max(Math.abs(this.low), Math.abs(this.high));
     this.canBeLogarithmic = !this.words && this.low > 0;
     this.isLogarithmic = this.canBeLogarithmic && description.logarithmic === true;
   }

@@ -68,7 +68,8 @@ function effectsOption({ metric, main }, shown, place) {
     const points = (values) => (isWord ? values : one.at.map((at, k) => [at, values[k]]));
     const axes = { xAxisIndex: i, yAxisIndex: i };
     option.grid.push({ left, top: top + 10, width: width - 30, height: height - 60 });
-    option.xAxis.push({ gridIndex: i, type: isWord ? 'category' : 'value', data: isWord ? one.at : undefined, scale: true,
+    option.xAxis.push({ gridIndex: i, type: isWord ? 'category' : 'value', data: isWord ? one.at : undefined,
+      min: isWord ? undefined : one.at[0], max: isWord ? undefined : one.at.at(-1),
       name: one.unit ? `${one.title} (${one.unit})` : one.title, nameLocation: 'middle', nameGap: 24,
       nameTextStyle: { fontSize: 11 }, splitLine: { show: false }, splitNumber: 3, axisLabel: { hideOverlap: true } });
     option.yAxis.push({ gridIndex: i, type: 'value', min: least, max: most, splitNumber: 3,
@@ -83,17 +84,19 @@ function effectsOption({ metric, main }, shown, place) {
   return option;
 }
 
-// metric(): the key of the metric that the page is about. onShare(text): what decides it most.
+// metric(): the key of the metric that the page is about. onShare(text, r2): what decides it most, and how
+// good the surrogate is that says so.
 export function setUpImportance(metric, onShare) {
   const bars = chartOf(find('importance-plot'));
   const importance = new Panel('importance', () => analysis('importance', { metric: metric() }), async (answer) => {
     const [first] = answer.parameters;
     if (first) {
-      onShare(`${first.title}: ${percent(first.total)}`);
+      onShare(`${first.title}: ${percent(first.total)}`, answer.surrogate.r2);
     }
     const text = answer.parameters.map((one) => `${one.title} ${percent(one.total)}`).join(', ');
     await bars.show(() => importanceOption(answer), `Shares of the variance of ${answer.metric.title}: ${text}`);
   });
+  importance.start(); // its answer is at the top of the page
   const lines = chartOf(find('effects-plot'));
   const effects = new Panel('effects', () => analysis('effects', { metric: metric() }), async (answer) => {
     const size = ({ mean }) => Math.max(...mean) - Math.min(...mean);

@@ -112,8 +112,11 @@ function setUp() {
   explorer = new Explorer(designs, address, designs.byKey.get(metric));
   const key = () => metric;
   const usual = usualObjectives();
-  const [importance, effects] = setUpImportance(key, (text) => setText(find('decides'), text));
-  const quality = setUpQuality(key, (r2) => setText(find('trust'), `R² ${r2.toFixed(3)}`));
+  const [importance, effects] = setUpImportance(key, (text, r2) => {
+    setText(find('decides'), text);
+    setText(find('trust'), `R² ${r2.toFixed(3)}`);
+  });
+  const quality = setUpQuality(key);
   const slice = new Slice(designs, address, key, showChosen);
   const pareto = new Pareto(designs, address, usual, {
     onFront: (rows, keys) => explorer.showFront(rows, keys), onPick: (row, on) => explorer.pick(row, on), onHover: (row) => explorer.point(row),
@@ -148,10 +151,11 @@ function curlLines() {
     ['The document, and the same study again', `curl -sS '${origin}/api/v1/jobs/${study.id}/document' | curl -sS -H 'Content-Type: application/json' --data-binary @- '${origin}/api/v1/jobs'`]];
 }
 
-// Takes in designs that are new; columns that are new (the first metrics) make the page anew.
+// Takes in designs that are new; columns that are new, or that begin to vary, make the page anew.
 async function takeDesigns(isOver) {
   const next = new Designs(await columns());
-  const isSame = explorer && next.columns.map(({ key }) => key).join() === designs.columns.map(({ key }) => key).join();
+  const kind = ({ columns: all }) => all.map(({ key, varies }) => `${key} ${varies}`).join();
+  const isSame = explorer && kind(next) === kind(designs);
   designs = next;
   if (isSame) {
     explorer.take(designs);

@@ -13,10 +13,15 @@ export class Panel {
     this.show = show;
     this.isSeen = false;
     this.turn = 0;
-    whenSeen(this.section, () => {
+    whenSeen(this.section, () => this.start());
+  }
+
+  // From now on it asks.
+  start() {
+    if (!this.isSeen) {
       this.isSeen = true;
       this.renew();
-    });
+    }
   }
 
   // Asks anew; an answer that comes after a later question is left alone.

@@ -30,11 +30,10 @@ function option({ metric, left_out: { known, predicted, deviation, jobs } }) {
   };
 }
 
-export function setUpQuality(metric, onQuality) {
+export function setUpQuality(metric) {
   const chart = chartOf(find('quality-plot'));
   return new Panel('quality', () => analysis('surrogate', { metric: metric() }), async (answer) => {
     const { r2, within_95: within, points, complete } = answer.surrogate;
-    onQuality(r2);
     find('quality-text').textContent = `R² ${r2.toFixed(3)} cross-validated · ${Math.round(100 * within)} % of the designs within their 95 % interval · made of ${
       points === complete ? points : `${points} of ${complete}`} designs`;
     await chart.show(() => option(answer), `Predicted against solved ${answer.metric.title}; R² ${r2.toFixed(3)}`);

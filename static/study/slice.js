@@ -54,7 +54,8 @@ function lineOption(answer) {
   const band = { type: 'line', stack: 'band', stackStrategy: 'all', symbol: 'none', lineStyle: { opacity: 0 }, silent: true };
   return {
     grid: { left: 72, right: 20, top: 14, bottom: 48 },
-    xAxis: { type: isWord ? 'category' : x.logarithmic ? 'log' : 'value', data: isWord ? x.values : undefined, scale: true, name: axisName(x),
+    xAxis: { type: isWord ? 'category' : x.logarithmic ? 'log' : 'value', data: isWord ? x.values : undefined, 
+      min: isWord ? undefined : x.values[0], max: isWord ? undefined : x.values.at(-1), name: axisName(x),
       nameLocation: 'middle', nameGap: 28 },
     yAxis: { type: 'value', scale: true, name: axisName(metric), nameLocation: 'middle', nameGap: 44 },
     tooltip: { trigger: 'axis', valueFormatter: number },

@@ -1,9 +1,26 @@
 // The page of a study: of ten thousand designs that stand in, for what it does and how fast, and of a real
 // study that runs.
+import { cpus, loadavg } from 'node:os';
 import { lab } from './driver.mjs';
 import { studyRoutes } from './stand_in.mjs';
 
 const MANY = 10000;
+const PICTURES = 60;
+
+// Where others keep the processors busy, time on a clock says nothing about the page: its own processor time
+// is what counts there.
+function isBusy() {
+  return loadavg()[0] > cpus().length;
+}
+
+// Processor time of the page's main thread so far, in ms.
+async function mainThread({ page }) {
+  const session = await page.context().newCDPSession(page);
+  await session.send('Performance.enable', { timeDomain: 'threadTicks' });
+  const { metrics } = await session.send('Performance.getMetrics');
+  await session.detach();
+  return 1000 * metrics.find(({ name }) => name === 'ThreadTime').value;
+}
 
 // Drags along an axis of the parallel coordinates, a step a picture; gives the pictures a second.
 function brush({ page }, index, steps) {
@@ -35,12 +52,18 @@ async function testMany({ open, check }) {
     && performance.getEntriesByName('study-usable').length === 1);
   const [start, data, usable] = await visit.value(() => ['study-start', 'study-data', 'study-usable'].map((name) =>
     Math.round(performance.getEntriesByName(name)[0].startTime)));
-  console.log(`usable after ${usable} ms: scripts ${start} ms, data ${data - start} ms, page ${usable - data} ms`);
-  await visit.value(() => performance.clearMarks());
+  const loading = await mainThread(visit);
+  console.log(`usable after ${usable} ms (scripts ${start}, data ${data - start}, page ${usable - data}), ${loading.toFixed(0)} ms of processor time`);
+  check('the page is usable within a second', usable <= 1000 || (isBusy() && loading <= 1000), `${usable} ms`);
   await brush(visit, 5, 20); // a compiler learns what is asked of it
-  const rates = [await brush(visit, 5, 60), await brush(visit, 0, 60)];
-  console.log(`brushing: ${rates.map((rate) => rate.toFixed(0)).join(' and ')} pictures a second`);
-  check('brushing keeps up', Math.max(...rates) >= 30, `${Math.max(...rates).toFixed(1)} pictures a second, expected 30`);
+  for (const axis of [5, 0]) {
+    const before = await mainThread(visit);
+    const rate = await brush(visit, axis, PICTURES);
+    const each = (await mainThread(visit) - before) / PICTURES;
+    const text = `${rate.toFixed(0)} pictures a second, ${each.toFixed(1)} ms of processor time each`;
+    console.log(`brushing axis ${axis}: ${text}`);
+    check('brushing keeps up', rate >= 30 || (isBusy() && each <= 1000 / 30), text);
+  }
   await visit.until('a brush limits what is selected', () => /^\d+ of 10000/.test(document.getElementById('selected').textContent)
     && document.querySelectorAll('.chip').length === 2);
   await visit.until('and is in the address', () => /in\./.test(location.search));
