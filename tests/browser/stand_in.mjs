@@ -26,7 +26,7 @@ function solved(gap, side, top, bottom, stiffness) {
 }
 
 // The answer of /designs?format=columns for `count` designs; every 50th has failed.
-export function columnsOf(count) {
+function columnsOf(count) {
   const random = generator(7);
   const values = Array.from({ length: 9 }, () => []);
   const states = [];
@@ -53,9 +53,9 @@ export function columnsOf(count) {
   };
 }
 
-export function summaryOf(count) {
+function summaryOf(id, count) {
   const failed = Math.floor(count / 50);
-  return { id: 7, name: 'walls, gap and material of a finger', state: 'succeeded', sampling: 'sobol', extendable: true, members: count,
+  return { id, name: 'walls, gap and material of a finger', state: 'succeeded', sampling: 'sobol', extendable: true, members: count,
     stored: count, counts: { succeeded: count - failed, failed }, failures: [{ reason_code: 'diverged', count: failed, jobs: [1049, 1099, 1149] }] };
 }
 
@@ -137,18 +137,18 @@ function search(query) {
     predicted: [{ predicted: true, values, metrics: metrics(1.2), chance: 0.93, meets: true, document: {}, solved: null }] };
 }
 
-// Routes for Playwright that answer as the study 7 of `count` designs.
-export function studyRoutes(count) {
+// Routes for Playwright that answer as if the study `id` had `count` designs.
+export function studyRoutes(id, count) {
   const document = columnsOf(count);
   const text = JSON.stringify(document);
   const parts = { importance, effects, slice, surrogate: quality, pareto, ranking, search };
   return {
-    '**/api/v1/jobs/7/document': (route) => route.fulfill({ contentType: 'application/json', body: '{"kind":"study"}' }),
-    '**/api/v1/studies/7**': (route) => {
+    [`**/api/v1/jobs/${id}/document`]: (route) => route.fulfill({ contentType: 'application/json', body: '{"kind":"study"}' }),
+    [`**/api/v1/studies/${id}**`]: (route) => {
       const url = new URL(route.request().url());
       const part = url.pathname.split('/').at(5) ?? '';
       const body = part === 'designs' ? text : JSON.stringify(parts[part] ? parts[part](url.searchParams, document)
-        : part === 'confirm' ? { id: 77 } : summaryOf(count));
+        : part === 'confirm' ? { id: 77 } : summaryOf(id, count));
       return route.fulfill({ status: part === 'confirm' ? 202 : 200, contentType: 'application/json', body });
     },
   };
