@@ -81,7 +81,10 @@ static void parameters_write(struct html *html, const char *title, json_t *rows,
   }
   group_open(html, title, jobs);
   json_array_foreach(rows, index, row) {
-    parameter_write(html, row);
+    const char *pointer = json_string_value(json_object_get(row, "pointer"));
+    if (strncmp(pointer, "/comment", 8) != 0) { /* words about the job, not part of it */
+      parameter_write(html, row);
+    }
   }
   html_close(html);
 }

@@ -1,5 +1,6 @@
 /* The page of all jobs. */
 #include <ctype.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,6 +10,7 @@
 #include "server/http/page.h"
 #include "server/http/page_text.h"
 #include "server/store/failures.h"
+#include "server/study/conductor.h"
 
 enum { ADDRESS = 2048 };
 
@@ -84,8 +86,16 @@ static void progress_write(struct html *html, const struct index *page,
   if (job->state != JOB_STATE_RUNNING && job->state != JOB_STATE_STARTING) {
     return;
   }
-  pool_progress(page->request->service->pool, job->id, &progress);
-  snprintf(text, sizeof text, "%.4f", progress.fraction);
+  const struct service *service = page->request->service;
+  if (!pool_progress(service->pool, job->id, &progress)) {
+    conductor_progress(service->conductor, job->id, &progress);
+  }
+  if (progress.steps > 0 && strcmp(job->kind, "study") == 0) {
+    html_open(html, "span", "class", "why", NULL);
+    html_format(html, "%lld of %lld designs", (long long)progress.step, (long long)progress.steps);
+    html_close(html);
+  }
+  snprintf(text, sizeof text, "%.4f", fmax(progress.fraction, 0));
   snprintf(label, sizeof label, "Progress of job %lld", (long long)job->id);
   html_leaf(html, "progress", "", "max", "1", "value", text, "aria-label", label, NULL);
 }
@@ -258,6 +268,9 @@ void page_index(struct request *request, struct reply *reply) {
   if (!jobs_query(request, reply, &query)) {
     page_problem(request, reply);
     return;
+  }
+  if (!url_query(&request->url, "study") && query.label_count == 0) {
+    query.study = LIST_STUDY_NONE; /* a study is one row */
   }
   enum status status =
       store_list(request->service->store, &query, &page.records, &page.count, &page.next, &error);

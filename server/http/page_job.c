@@ -8,11 +8,21 @@
 #include "server/http/page.h"
 #include "server/http/page_job.h"
 #include "server/http/page_text.h"
+#include "server/study/conductor.h"
 #include "solver/job/json.h"
 
 static void kind_write(struct html *html, void *context) {
   const struct job_page *page = context;
-  html_format(html, "Job %lld · %s", (long long)page->record.id, page->record.kind);
+  const struct job_record *job = &page->record;
+  char href[PAGE_TEXT];
+  bool study = strcmp(job->kind, "study") == 0;
+  html_format(html, "Job %lld · %s", (long long)job->id, job->kind);
+  if (study || job->study_id != 0) {
+    snprintf(href, sizeof href, "/studies/%lld", (long long)(study ? job->id : job->study_id));
+    html_text(html, " · ");
+    html_leaf(html, "a", study ? "explore its designs" : "the study it belongs to", "href", href,
+              NULL);
+  }
 }
 
 static void name_write(struct html *html, void *context) {
@@ -26,7 +36,10 @@ static void progress_write(struct html *html, const struct job_page *page) {
   if (page->record.state != JOB_STATE_RUNNING && page->record.state != JOB_STATE_STARTING) {
     return;
   }
-  pool_progress(page->request->service->pool, page->record.id, &progress);
+  const struct service *service = page->request->service;
+  if (!pool_progress(service->pool, page->record.id, &progress)) {
+    conductor_progress(service->conductor, page->record.id, &progress);
+  }
   double share = fmin(fmax(progress.fraction, 0), 1);
   snprintf(value, sizeof value, "%.4f", share);
   html_leaf(html, "progress", "", "id", "progress", "max", "1", "value", value, "aria-label",

@@ -191,7 +191,8 @@ void page_picture(struct html *html, const char *url, const char *caption, int w
   snprintf(across, sizeof across, "%d", width);
   snprintf(down, sizeof down, "%d", height);
   html_open(html, "picture", NULL);
-  html_void(html, "source", "srcset", dark, "media", "(prefers-color-scheme: dark)", NULL);
+  html_void(html, "source", "srcset", dark, "media", "screen and (prefers-color-scheme: dark)",
+            NULL);
   html_void(html, "img", "src", light, "alt", caption, "width", across, "height", down, NULL);
   html_close(html);
 }

@@ -173,23 +173,42 @@ async function testReading({ open, check }) {
   await visit.close();
 }
 
+// A study is one row of the list, and can be read as a table.
+async function testStudy({ open, check, daemon }) {
+  const study = await daemon.submit({ kind: 'study', name: 'two gaps', sampling: 'grid', base: finger({ error_estimate: false }),
+    parameters: [{ pointer: '/actuator/chamber_gap', values: ['1 mm', '1.5 mm'] }] });
+  const visit = await open('/', { script: false });
+  const { page } = visit;
+  check('a study is one row', await page.locator('#jobs tr').first().getAttribute('data-id') === String(study.id));
+  await page.click(`#jobs tr[data-id="${study.id}"] .name a`);
+  await page.waitForURL(/studies/);
+  check('its designs can be read', await page.locator('#reading-table tbody tr').count() === 2);
+  const gaps = () => page.locator('#reading-table tbody td:nth-child(3)').allTextContents();
+  check('with their dimensions', (await gaps()).join() === '1,1.500');
+  for (const order of ['chamber_gap', '-chamber_gap']) {
+    await page.click('#reading-table thead th:nth-child(3) a');
+    await page.waitForURL((url) => url.search.endsWith(`sort=${order.startsWith('-') ? '-' : ''}/actuator/chamber_gap`));
+  }
+  check('links sort them', (await gaps()).join() === '1.500,1');
+  check('and it is drawn', await page.locator('.plot img').count() > 0);
+  await visit.quiet();
+  await visit.close();
+}
+
+// Desk and phone, light and dark.
 async function testSizes({ open }) {
-  for (const scheme of ['light', 'dark']) {
-    for (const [width, height] of [[1280, 900], [390, 844]]) {
-      for (const [name, path] of [['list', '/'], ['job', '/jobs/1'], ['failed', '/jobs/3'], ['compare', '/compare?jobs=1,2'],
-        ['submit', '/submit?from=1']]) {
-        const what = `${name}-${width}-${scheme}`;
-        const visit = await open(path, { width, height, scheme });
-        await visit.page.waitForLoadState('networkidle');
-        await visit.fits(`${what} fits`);
-        await visit.still(`${what} is still`);
-        if (width === 1280) {
-          await visit.accessible(`${what} is accessible`);
-        }
-        await visit.quiet(`${what} complains about nothing`, BY_SOFTWARE);
-        await visit.shot(what);
-        await visit.close();
-      }
+  const pages = { list: '/', job: '/jobs/1', failed: '/jobs/3', compare: '/compare?jobs=1,2', submit: '/submit?from=1' };
+  for (const [width, height, scheme] of [[1280, 900, 'light'], [390, 844, 'dark']]) {
+    for (const [name, path] of Object.entries(pages)) {
+      const what = `${name}-${width}-${scheme}`;
+      const visit = await open(path, { width, height, scheme });
+      await visit.page.waitForLoadState('networkidle');
+      await visit.fits(`${what} fits`);
+      await visit.still(`${what} is still`);
+      await visit.accessible(`${what} is accessible`);
+      await visit.quiet(`${what} complains about nothing`, BY_SOFTWARE);
+      await visit.shot(what);
+      await visit.close();
     }
   }
 }
@@ -205,5 +224,6 @@ await lab(async (tools) => {
   await testEditor(tools);
   await testRunning(tools);
   await testReading(tools);
+  await testStudy(tools);
   await testSizes(tools);
 }, { options: ['--workers', '1'] });
