@@ -55,12 +55,27 @@ static struct ticks y_ticks(const struct canvas *canvas, const struct axes *axes
                     axes_tick_target(canvas, frame->area.height, Y_SPACING));
 }
 
+/* Width of the longest word beside the y axis, at most a quarter of the sheet. */
+static double widest_name(struct canvas *canvas, const struct axes *axes) {
+  struct text_style style = chart_style_tick();
+  double widest = 0, width, height;
+  for (size_t i = 0; i < axes->y_name_count; i++) {
+    canvas_measure(canvas, axes->y_names[i], &style, &width, &height);
+    widest = fmax(widest, width);
+  }
+  return fmin(widest, 0.25 * canvas->width);
+}
+
 double axes_left_room(struct canvas *canvas, const struct axes *axes, const struct frame *frame) {
   if (axes->no_y_text) {
     return MARGIN * canvas->unit;
   }
+  double label = axes->y_label ? LABEL : LABEL - 20;
+  if (axes->y_names) {
+    return (MARGIN + label) * canvas->unit + widest_name(canvas, axes);
+  }
   struct ticks ticks = y_ticks(canvas, axes, frame);
-  return (MARGIN + LABEL) * canvas->unit + axes_widest_tick(canvas, &ticks);
+  return (MARGIN + label) * canvas->unit + axes_widest_tick(canvas, &ticks);
 }
 
 /* Whether the words fit side by side; *widest becomes the width of the longest, at most `most`. */
@@ -151,7 +166,12 @@ void axes_widen(const struct canvas *canvas, const struct axes *axes, struct fra
   } else {
     widen(axes->log_x, &frame->x_min, &frame->x_max, across);
   }
-  widen_upwards(axes, frame, upwards);
+  if (axes->y_names) {
+    frame->y_min = -0.6;
+    frame->y_max = (double)axes->y_name_count - 0.4;
+  } else {
+    widen_upwards(axes, frame, upwards);
+  }
 }
 
 static void draw_x_numbers(struct canvas *canvas, const struct axes *axes,
@@ -217,6 +237,25 @@ static void draw_y_numbers(struct canvas *canvas, const struct axes *axes,
   }
 }
 
+/* Words at their places, of many every so many-th. */
+static void draw_y_names(struct canvas *canvas, const struct axes *axes,
+                         const struct frame *frame) {
+  double u = canvas->unit, left = frame->area.x, width, line;
+  struct text_style style = chart_style_tick();
+  style.max_width = widest_name(canvas, axes) + 1;
+  canvas_measure(canvas, "Xg", &style, &width, &line);
+  double place = frame->area.height / (double)axes->y_name_count;
+  size_t stride = (size_t)fmax(ceil(line / place), 1);
+  for (size_t i = 0; i < axes->y_name_count; i++) {
+    double y = frame_pixel(frame, (struct point){frame->x_min, (double)i}).y;
+    canvas_set_colour(canvas, colour_muted);
+    canvas_line(canvas, left - TICK * u, y, left, y, 1);
+    if (!axes->no_y_text && i % stride == 0) {
+      canvas_text(canvas, left - (TICK + NUMBER_GAP) * u, y, 1, 0.5, axes->y_names[i], &style);
+    }
+  }
+}
+
 static void draw_x_label(struct canvas *canvas, const struct axes *axes,
                          const struct frame *frame) {
   const struct box *a = &frame->area;
@@ -246,7 +285,7 @@ void axes_draw(struct canvas *canvas, const struct axes *axes, const struct fram
     draw_x_label(canvas, axes, frame);
   } else {
     axes_draw_x(canvas, axes, frame);
-    draw_y_numbers(canvas, axes, frame);
+    (axes->y_names ? draw_y_names : draw_y_numbers)(canvas, axes, frame);
   }
   canvas_set_colour(canvas, colour_muted);
   canvas_line(canvas, a->x, a->y, a->x, bottom, 1);

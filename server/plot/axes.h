@@ -11,6 +11,8 @@ struct axes {
   bool whole_x;               /* only whole numbers on the x axis */
   const char *const *x_names; /* words under x = 0, 1, ...; NULL: numbers */
   size_t x_name_count;
+  const char *const *y_names; /* words beside y = 0, 1, ...; NULL: numbers */
+  size_t y_name_count;
   bool no_x_text; /* the chart below says it */
   bool no_y_text; /* the chart on the left says it */
 };

@@ -4,6 +4,7 @@
 
 #include <cairo.h>
 #include <pango/pangocairo.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include "server/plot/colour.h"
 #include "solver/base/error.h"
@@ -16,6 +17,7 @@ struct canvas {
   int width, height;
   double unit; /* pixels of one design unit: a line of width 1 on a sheet of 800 x 600 */
   enum colour_theme theme;
+  bool busy; /* hardly two pixels are alike: to be compressed in haste */
 };
 
 struct text_style {

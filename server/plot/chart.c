@@ -46,7 +46,8 @@ enum { BAR_GAP = 18, BAR_WIDTH = 16, BAR_TEXT = 7, BAR_LABEL = 24 };
 
 static struct ticks bar_ticks(const struct canvas *canvas, const struct colour_bar *bar,
                               double height) {
-  return ticks_make(bar->min, bar->max, axes_tick_target(canvas, height, 56));
+  return (bar->logarithmic ? ticks_make_log : ticks_make)(bar->min, bar->max,
+                                                          axes_tick_target(canvas, height, 56));
 }
 
 double chart_bar_room(struct canvas *canvas, const struct colour_bar *bar) {
@@ -58,12 +59,22 @@ double chart_bar_room(struct canvas *canvas, const struct colour_bar *bar) {
          (BAR_GAP + BAR_WIDTH + BAR_TEXT + BAR_LABEL) * canvas->unit;
 }
 
+struct colour chart_bar_colour(const struct colour_bar *bar, double value) {
+  double t = (value - bar->min) / (bar->max - bar->min);
+  if (bar->bands > 0) {
+    double last = bar->bands - 1;
+    t = isnan(t) ? t : fmin(fmax(floor(t * bar->bands), 0), last) / fmax(last, 1);
+  }
+  return bar->map(t);
+}
+
 void chart_bar(struct canvas *canvas, const struct colour_bar *bar, struct box area) {
   double u = canvas->unit;
   double x = area.x + area.width - chart_bar_room(canvas, bar) + BAR_GAP * u;
   int height = (int)round(area.height);
   for (int i = 0; i < height; i++) {
-    canvas_set_colour(canvas, bar->map(1.0 - (i + 0.5) / height));
+    double value = bar->min + (1.0 - (i + 0.5) / height) * (bar->max - bar->min);
+    canvas_set_colour(canvas, chart_bar_colour(bar, value));
     cairo_rectangle(canvas->cr, round(x), round(area.y) + i, round(BAR_WIDTH * u), 1);
     cairo_fill(canvas->cr);
   }
@@ -80,6 +91,7 @@ void chart_bar(struct canvas *canvas, const struct colour_bar *bar, struct box a
     canvas_text(canvas, right + BAR_TEXT * u, y, 0, 0.5, text, &style);
   }
   struct text_style label = chart_style_label();
+  label.max_width = area.height;
   canvas_text_upwards(canvas, area.x + area.width - 8 * u, area.y + area.height / 2, bar->label,
                       &label);
 }

@@ -61,7 +61,9 @@ struct chart_label {
 struct colour_bar {
   const char *label; /* NULL: no bar */
   struct colour (*map)(double t);
-  double min, max; /* map(0) and map(1), max > min */
+  double min, max;  /* map(0) and map(1), max > min */
+  bool logarithmic; /* min and max are decimal logarithms */
+  int bands;        /* so many steps of even colour; 0: it changes all along */
 };
 
 struct chart {
@@ -121,8 +123,10 @@ void chart_heading(struct canvas *canvas, double left, const char *title, const 
 /* Height in pixels from the top of the sheet to where the picture below a heading may start. */
 double chart_heading_height(const struct canvas *canvas, const char *subtitle, const char *notice);
 
-/* Draws a colour bar along the right end of `area`, whose right part of chart_bar_room() pixels
- * it takes. */
+/* Colour of a value; grey for NaN.
+ * chart_bar draws a colour bar along the right end of `area`, whose right part of chart_bar_room()
+ * pixels it takes. */
+struct colour chart_bar_colour(const struct colour_bar *bar, double value);
 void chart_bar(struct canvas *canvas, const struct colour_bar *bar, struct box area);
 double chart_bar_room(struct canvas *canvas, const struct colour_bar *bar);
 

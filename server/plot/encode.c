@@ -3,6 +3,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <zlib.h>
 
 #include "server/plot/canvas.h"
 
@@ -86,7 +87,10 @@ static int write_picture(png_structp png, png_infop info, jmp_buf *trap, struct 
   }
   const unsigned char *pixels = cairo_image_surface_get_data(canvas->surface);
   int stride = cairo_image_surface_get_stride(canvas->surface);
-  png_set_compression_level(png, COMPRESSION_LEVEL);
+  png_set_compression_level(png, canvas->busy ? 1 : COMPRESSION_LEVEL);
+  if (canvas->busy) {
+    png_set_compression_strategy(png, Z_RLE);
+  }
   png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
   png_set_IHDR(png, info, (png_uint_32)canvas->width, (png_uint_32)canvas->height, 8,
                PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,

@@ -43,6 +43,11 @@ static struct picture decode(const unsigned char *png, size_t size) {
   return picture;
 }
 
+struct picture picture_decode(const unsigned char *png, size_t size, const char *name) {
+  keep(name, png, size);
+  return decode(png, size);
+}
+
 /* Draws, decodes and keeps a picture; fails the test when it cannot be drawn. */
 struct picture picture_draw(const char *plot, const struct plot_input *inputs, size_t count,
                             int width, int height, const char *name) {

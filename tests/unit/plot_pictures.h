@@ -12,6 +12,9 @@ struct picture {
   unsigned char *rgb;
 };
 
+/* Decodes a picture and keeps it under `name` (NULL: not). */
+struct picture picture_decode(const unsigned char *png, size_t size, const char *name);
+
 /* Draws, decodes and keeps a picture under `name` (NULL: not kept); fails the test when it cannot
  * be drawn. */
 struct picture picture_draw(const char *plot, const struct plot_input *inputs, size_t count,
