@@ -28,6 +28,9 @@ handler attempts_list, attempts_log;
 /* plots.c */
 handler plot_job, plot_overlay;
 
+/* study_picture.c */
+handler study_picture;
+
 /* compare.c */
 handler compare_show;
 

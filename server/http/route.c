@@ -47,6 +47,8 @@ static const struct route {
     {HTTP_GET, ROLE_READ, "api/v1/studies/{id}/slice", study_slice, "metric x y resolution at."},
     {HTTP_GET, ROLE_READ, "api/v1/studies/{id}/search", study_search,
      "where least most chance limit"},
+    {HTTP_GET, ROLE_READ, "api/v1/studies/{id}/plots/{plot}.png", study_picture,
+     "width height theme metric x y colour columns objectives criteria at."},
     {HTTP_POST, ROLE_SUBMIT, "api/v1/studies/{id}/confirm", study_confirm, ""},
     {HTTP_GET, ROLE_READ, "api/v1/studies/{id}/export.csv", study_export, "format objectives"},
     {HTTP_GET, ROLE_READ, "api/v1/events", events_show, "job label. after"},

@@ -135,46 +135,6 @@ struct slice {
   double at[SURROGATE_PARAMETERS_MAX]; /* NaN: the middle */
 };
 
-/* The value of a parameter from the text of a query: a word of it, or a number. */
-static enum status read_value(const struct study_column *column, const char *text, double *value,
-                              struct error *error) {
-  char *end;
-  for (size_t i = 0; i < column->word_count; i++) {
-    if (strcmp(column->words[i], text) == 0) {
-      *value = (double)i;
-      return STATUS_OK;
-    }
-  }
-  *value = strtod(text, &end);
-  if (column->categorical || end == text || *end != '\0' || !isfinite(*value)) {
-    return error_set(error, STATUS_INVALID, NULL, "%.40s is no value of %.100s\n%s", text,
-                     column->key,
-                     column->categorical ? "one of its words, as the study gives them"
-                                         : "a number, in the unit in which it is shown");
-  }
-  return STATUS_OK;
-}
-
-static enum status read_fixed(const struct request *request, const struct study_table *table,
-                              struct slice *slice, struct error *error) {
-  enum status status = STATUS_OK;
-  for (size_t k = 0; k < SURROGATE_PARAMETERS_MAX; k++) {
-    slice->at[k] = NAN;
-  }
-  for (size_t i = 0; i < request->url.query_count && status == STATUS_OK; i++) {
-    const struct url_pair *pair = &request->url.query[i];
-    size_t column;
-    if (strncmp(pair->name, "at.", 3) != 0) {
-      continue;
-    }
-    status = criteria_parameter(table, pair->name + 3, &column, error);
-    if (status == STATUS_OK && column < SURROGATE_PARAMETERS_MAX) {
-      status = read_value(&table->parameter[column], pair->value, &slice->at[column], error);
-    }
-  }
-  return status;
-}
-
 static enum status read_slice(const struct request *request, const struct study_table *table,
                               struct slice *slice, struct error *error) {
   const char *y = query_of(request, "y");
@@ -192,7 +152,7 @@ static enum status read_slice(const struct request *request, const struct study_
     status = error_set(error, STATUS_INVALID, NULL,
                        "x and y are the same parameter\ntwo different ones, or x alone");
   }
-  return status == STATUS_OK ? read_fixed(request, table, slice, error) : status;
+  return status == STATUS_OK ? study_fixed_read(request, table, slice->at, error) : status;
 }
 
 void study_slice(struct request *request, struct reply *reply) {

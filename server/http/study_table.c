@@ -1,5 +1,6 @@
 #include "server/http/study_table.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -47,5 +48,45 @@ enum status study_document_read(const struct request *request, int64_t study_id,
     status = json_text_read(text, strlen(text), document, error);
   }
   free(text);
+  return status;
+}
+
+/* The value of a parameter from the text of a query: a word of it, or a number. */
+static enum status read_value(const struct study_column *column, const char *text, double *value,
+                              struct error *error) {
+  char *end;
+  for (size_t i = 0; i < column->word_count; i++) {
+    if (strcmp(column->words[i], text) == 0) {
+      *value = (double)i;
+      return STATUS_OK;
+    }
+  }
+  *value = strtod(text, &end);
+  if (column->categorical || end == text || *end != '\0' || !isfinite(*value)) {
+    return error_set(error, STATUS_INVALID, NULL, "%.40s is no value of %.100s\n%s", text,
+                     column->key,
+                     column->categorical ? "one of its words, as the study gives them"
+                                         : "a number, in the unit in which it is shown");
+  }
+  return STATUS_OK;
+}
+
+enum status study_fixed_read(const struct request *request, const struct study_table *table,
+                             double at[SURROGATE_PARAMETERS_MAX], struct error *error) {
+  enum status status = STATUS_OK;
+  for (size_t k = 0; k < SURROGATE_PARAMETERS_MAX; k++) {
+    at[k] = NAN;
+  }
+  for (size_t i = 0; i < request->url.query_count && status == STATUS_OK; i++) {
+    const struct url_pair *pair = &request->url.query[i];
+    size_t column;
+    if (strncmp(pair->name, "at.", 3) != 0) {
+      continue;
+    }
+    status = criteria_parameter(table, pair->name + 3, &column, error);
+    if (status == STATUS_OK && column < SURROGATE_PARAMETERS_MAX) {
+      status = read_value(&table->parameter[column], pair->value, &at[column], error);
+    }
+  }
   return status;
 }

@@ -20,4 +20,9 @@ void study_reply(struct reply *reply, enum status status, json_t *answer,
 enum status study_document_read(const struct request *request, int64_t study_id, json_t **document,
                                 struct error *error);
 
+/* The values at which a slice holds its other parameters: at.POINTER=VALUE of the query, NaN for
+ * those that it does not name. STATUS_INVALID for a pointer or a value that is none. */
+enum status study_fixed_read(const struct request *request, const struct study_table *table,
+                             double at[SURROGATE_PARAMETERS_MAX], struct error *error);
+
 #endif

@@ -173,7 +173,7 @@ static enum status draw_lines(struct canvas *canvas, const struct rails *rails,
     cloud_lines(cloud, rails->rail[i].x, rails->rail[i + 1].x, lines, count, 1.3 * canvas->unit);
   }
   if (most > 0) {
-    cloud_paint(cloud, canvas, cloud_opacity(most) * (failed ? 0.45 : 1));
+    cloud_paint(cloud, canvas, cloud_opacity(most) * (failed ? fmin(1, 25.0 / (double)most) : 1));
     canvas->busy = canvas->busy || most > LINES_FINE;
   }
   cloud_destroy(cloud);
