@@ -91,7 +91,8 @@ enum status draw_midline(struct canvas *canvas, const struct plot_input *inputs,
                         .series_count = lines.count,
                         .empty = "No centrelines were recorded"};
   if (coloured) {
-    chart.bar = (struct colour_bar){.label = "Pressure (kPa)", .map = colour_map_line, .min = low, .max = high};
+    chart.bar = (struct colour_bar){
+        .label = "Pressure (kPa)", .map = colour_map_line, .min = low, .max = high};
   }
   chart_draw(&chart, canvas);
 done:

@@ -96,7 +96,8 @@ enum status draw_midline3d(struct canvas *canvas, const struct plot_input *input
                           .path_count = lines.count,
                           .empty = "No centrelines were recorded"};
     if (lines.high > lines.low) {
-      views.bar = (struct colour_bar){.label = "Pressure (kPa)", .map = colour_map_line, .min = lines.low, .max = lines.high};
+      views.bar = (struct colour_bar){
+          .label = "Pressure (kPa)", .map = colour_map_line, .min = lines.low, .max = lines.high};
     }
     views_draw(&views, canvas);
   }
@@ -143,7 +144,8 @@ enum status draw_tip3d(struct canvas *canvas, const struct plot_input *inputs, s
                         .path_count = 1,
                         .empty = "No positions of the tip were recorded"};
   if (high > low) {
-    views.bar = (struct colour_bar){.label = "Pressure (kPa)", .map = colour_map_line, .min = low, .max = high};
+    views.bar = (struct colour_bar){
+        .label = "Pressure (kPa)", .map = colour_map_line, .min = low, .max = high};
   }
   views_draw(&views, canvas);
   free(points);

@@ -159,7 +159,8 @@ static double *scale_stretch(const struct skin *skin, struct colour_bar *bar) {
   for (size_t i = 0; i < skin->point_count; i++) {
     values[i] = (skin->stretch[i] - low) / (high - low);
   }
-  *bar = (struct colour_bar){.label = "Largest principal stretch", .map = colour_map_area, .min = low, .max = high};
+  *bar = (struct colour_bar){
+      .label = "Largest principal stretch", .map = colour_map_area, .min = low, .max = high};
   return values;
 }
 

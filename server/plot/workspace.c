@@ -164,7 +164,8 @@ enum status draw_workspace(struct canvas *canvas, const struct plot_input *input
       views.key = draw_key;
       views.key_context = &space;
     } else {
-      views.bar = (struct colour_bar){.label = "Pressure (kPa)", .map = colour_map_line, .min = 0, .max = space.top_kPa};
+      views.bar = (struct colour_bar){
+          .label = "Pressure (kPa)", .map = colour_map_line, .min = 0, .max = space.top_kPa};
     }
     views_draw(&views, canvas);
   }
