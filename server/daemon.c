@@ -18,6 +18,7 @@
 #include "server/exec/pool.h"
 #include "server/exec/share.h"
 #include "server/http/access.h"
+#include "server/http/analyst.h"
 #include "server/http/answers.h"
 #include "server/http/feed.h"
 #include "server/http/record.h"
@@ -58,6 +59,11 @@ static void job_progressed(void *context, int64_t job_id, int64_t attempt,
 static void copy_made(void *context, int64_t ticket) {
   const struct service *service = context;
   waiters_job_ended(service->waiters, -ticket);
+}
+
+static void analysis_made(void *context, int64_t waited) {
+  const struct service *service = context;
+  waiters_job_ended(service->waiters, waited);
 }
 
 static enum status isolate(const struct options *options, struct isolation *isolation,
@@ -175,13 +181,18 @@ static enum status parts_open(const struct options *options, struct parts *parts
                               &service->snapshots, error);
   }
   if (status == STATUS_OK) {
+    status = analyst_create(analysis_made, service, &service->analyst, error);
+  }
+  if (status == STATUS_OK) {
     status = server_create(options, service, &parts->server, error);
   }
   return status;
 }
 
 static void parts_close(struct parts *parts) {
-  server_destroy(parts->server); /* its handlers ask the pool */
+  analyst_stop(parts->service.analyst); /* it uses requests of the server */
+  server_destroy(parts->server);        /* its handlers ask the pool */
+  analyst_destroy(parts->service.analyst);
   snapshots_destroy(parts->service.snapshots);
   conductor_stop(parts->service.conductor); /* it asks the pool, */
   pool_destroy(parts->service.pool);

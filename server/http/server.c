@@ -9,6 +9,7 @@
 
 #include "server/base/clock.h"
 #include "server/http/access.h"
+#include "server/http/analyst.h"
 #include "server/http/answers.h"
 #include "server/http/connections.h"
 #include "server/http/feed.h"
@@ -221,7 +222,7 @@ static enum MHD_Result exchange_wait(struct exchange *exchange, const struct rep
   }
   /* From here on another thread may resume and even finish the exchange. */
   if (job_id < 0) {
-    if (snapshots_done(service->snapshots, -job_id)) {
+    if (snapshots_done(service->snapshots, -job_id) || analyst_done(service->analyst, job_id)) {
       waiters_job_ended(service->waiters, job_id);
     }
     return MHD_YES;

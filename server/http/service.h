@@ -16,6 +16,7 @@
 #include "server/store/store.h"
 
 struct MHD_Connection;
+struct analyst;
 struct answer;
 struct answers;
 struct access;
@@ -43,6 +44,7 @@ struct service {
   struct feed *feed;                 /* the stream of events */
   struct answers *answers;           /* kept answers */
   struct tables *tables;             /* kept tables of studies */
+  struct analyst *analyst;           /* handles what takes long */
   struct models *models;             /* surrogates of studies */
   struct access *access;             /* who may come in */
   struct job_reader *reader;         /* checks job documents */
@@ -77,7 +79,7 @@ struct request {
   struct url url;
   const char *known_query;   /* names of the query parameters of the route, NULL: whatever */
   const char *parameters[2]; /* of the route, in order */
-  int64_t job_id;            /* of the job that the request waits for; negative: of a copy */
+  int64_t job_id;            /* of the job that the request waits for; negative: of a copy or analysis */
   bool job_is_new;           /* the request made that job: the reply says where it is */
   char *body;                /* NUL-terminated; NULL when empty */
   size_t body_size;

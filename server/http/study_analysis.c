@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "server/http/analyst.h"
 #include "server/http/handlers.h"
 #include "server/http/study_table.h"
 #include "solver/job/json.h"
@@ -64,7 +65,7 @@ void study_ranking(struct request *request, struct reply *reply) {
   study_table_close(request, table);
 }
 
-void study_pareto(struct request *request, struct reply *reply) {
+static void show_pareto(struct request *request, struct reply *reply) {
   struct criterion objectives[CRITERIA_MAX];
   struct error error = {.status = STATUS_OK};
   json_t *answer = NULL;
@@ -84,6 +85,10 @@ void study_pareto(struct request *request, struct reply *reply) {
   }
   study_reply(reply, status, answer, &error);
   study_table_close(request, table);
+}
+
+void study_pareto(struct request *request, struct reply *reply) {
+  analyst_defer(request, reply, show_pareto);
 }
 
 /* ---- by a surrogate ------------------------------------------------------------------------ */
@@ -113,16 +118,28 @@ static void reply_by_model(struct request *request, struct reply *reply, analysi
   study_table_close(request, table);
 }
 
-void study_importance(struct request *request, struct reply *reply) {
+static void show_importance(struct request *request, struct reply *reply) {
   reply_by_model(request, reply, analysis_importance);
 }
 
-void study_effects(struct request *request, struct reply *reply) {
+void study_importance(struct request *request, struct reply *reply) {
+  analyst_defer(request, reply, show_importance);
+}
+
+static void show_effects(struct request *request, struct reply *reply) {
   reply_by_model(request, reply, analysis_effects);
 }
 
-void study_surrogate(struct request *request, struct reply *reply) {
+void study_effects(struct request *request, struct reply *reply) {
+  analyst_defer(request, reply, show_effects);
+}
+
+static void show_surrogate(struct request *request, struct reply *reply) {
   reply_by_model(request, reply, analysis_surrogate);
+}
+
+void study_surrogate(struct request *request, struct reply *reply) {
+  analyst_defer(request, reply, show_surrogate);
 }
 
 /* ---- slices -------------------------------------------------------------------------------- */
@@ -155,7 +172,7 @@ static enum status read_slice(const struct request *request, const struct study_
   return status == STATUS_OK ? study_fixed_read(request, table, slice->at, error) : status;
 }
 
-void study_slice(struct request *request, struct reply *reply) {
+static void show_slice(struct request *request, struct reply *reply) {
   struct error error = {.status = STATUS_OK};
   struct model *model = NULL;
   struct slice slice;
@@ -180,4 +197,8 @@ void study_slice(struct request *request, struct reply *reply) {
   study_reply(reply, status, answer, &error);
   model_release(model);
   study_table_close(request, table);
+}
+
+void study_slice(struct request *request, struct reply *reply) {
+  analyst_defer(request, reply, show_slice);
 }

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "server/http/analyst.h"
 #include "server/http/handlers.h"
 #include "server/http/study_table.h"
 #include "server/http/submission.h"
@@ -46,7 +47,7 @@ static enum status read_query(const struct request *request, const struct study_
                              : status;
 }
 
-void study_search(struct request *request, struct reply *reply) {
+static void show_search(struct request *request, struct reply *reply) {
   struct service *service = request->service;
   struct search_query query;
   struct error error = {.status = STATUS_OK};
@@ -75,6 +76,10 @@ void study_search(struct request *request, struct reply *reply) {
   study_reply(reply, status, answer, &error);
   json_decref(document);
   study_table_close(request, table);
+}
+
+void study_search(struct request *request, struct reply *reply) {
+  analyst_defer(request, reply, show_search);
 }
 
 /* ---- confirm ------------------------------------------------------------------------------- */
