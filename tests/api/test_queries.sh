@@ -6,9 +6,7 @@ command -v python3 > /dev/null || { echo "SKIP: python3 is not installed"; exit 
 here=$(cd "$(dirname "$0")" && pwd)
 page=$here/../../docs/QUERIES.md
 
-cat > "$WORK/solver" <<'END'
-#!/bin/bash
-for job; do :; done
+stand_in=$(cat <<'END'
 result=$(jq -c '(.actuator.side_wall | split(" ")[0] | tonumber) as $wall | .actuator.chambers[0].count as $n |
   (if .material == "elastic-50a" then 1 else 1.6 end) as $soft | (if .accuracy == "standard" then 1 / 1.015 else 1 end) as $fine |
   def angle: 1.21 * $n / 12 * 2 / $wall * $soft * . * (1 + 0.004 * .) * $fine;
@@ -21,8 +19,8 @@ result=$(jq -c '(.actuator.side_wall | split(" ")[0] | tonumber) as $wall | .act
 printf '%s\n' "$result"
 [[ $result != *'"status":"diverged"'* ]] || exit 3
 END
-chmod +x "$WORK/solver"
-start_daemon --workers 2 --solver "$WORK/solver"
+)
+start_daemon --workers 2 --solver "$(solver "$stand_in")"
 study=$(python3 "$here/check_queries.py" "$page" --study)
 check "the study of the page is the first job" 1 "$(submit "$study")"
 check "it is conducted" succeeded "$(wait_state 1 'succeeded|failed|timed_out' 90)"
