@@ -112,7 +112,7 @@ static void add_smooth(const struct slice *s, const struct cloud_line *lines, si
     const struct cloud_line *line = &lines[k];
     float rise = (line->to - line->from) * s->scale;
     float middle = (line->from - s->top) * s->scale + s->part * rise, slope = rise / s->across;
-    const sums full = {line->r, line->g, line->b, 1};
+    const sums full = (sums){line->r, line->g, line->b, 1} * line->weight;
     float reach = s->half * sqrtf(1 + slope * slope);
     float from = fmaxf(middle - reach, 0), to = fminf(middle + reach, (float)s->rows);
     for (int j = (int)from; (float)j < to; j++) {
@@ -151,9 +151,9 @@ static struct runner *make_runners(const struct slice *s, const struct cloud_lin
   for (size_t k = 0; runners && k < count; k++) {
     double from = fmin(fmax((double)(lines[k].from - s->top) * s->scale, 0), most);
     double to = fmin(fmax((double)(lines[k].to - s->top) * s->scale, 0), most);
-    runners[k] = (struct runner){{lines[k].r, lines[k].g, lines[k].b, 1},
-                                 (int32_t)(from * 65536),
-                                 (int32_t)((to - from) / s->across * 65536)};
+    runners[k] =
+        (struct runner){(sums){lines[k].r, lines[k].g, lines[k].b, 1} * lines[k].weight,
+                        (int32_t)(from * 65536), (int32_t)((to - from) / s->across * 65536)};
   }
   return runners;
 }

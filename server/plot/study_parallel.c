@@ -127,59 +127,65 @@ static double spread(const struct rail *rail, size_t row) {
              : 0;
 }
 
-/* The lines of the rows that are wanted between two axes. */
+/* The lines of the members between two axes. One that failed outweighs those that it crosses. */
 static size_t make_lines(const struct rails *rails, size_t left, const struct rgb *colours,
-                         bool failed, struct cloud_line *lines) {
+                         struct cloud_line *lines) {
   const struct rail *a = &rails->rail[left], *b = a + 1;
+  const struct study_table *table = a->axis.table;
+  float heavy = 4 + (float)table->members / 400;
   size_t count = 0;
-  for (size_t row = 0; row < a->axis.table->members; row++) {
+  for (size_t row = 0; row < table->members; row++) {
     double from = study_axis_at(&a->axis, row), to = study_axis_at(&b->axis, row);
-    bool wanted =
-        failed ? study_row_failed(a->axis.table, row) : study_row_counts(a->axis.table, row);
-    if (!wanted || isnan(from) || isnan(to)) {
+    bool solved = study_row_counts(table, row);
+    if (isnan(from) || isnan(to) || !(solved || study_row_failed(table, row))) {
       continue;
     }
     struct rgb c = colours[row];
-    lines[count++] = (struct cloud_line){(float)rail_y(rails, a, from + spread(a, row)),
-                                         (float)rail_y(rails, b, to + spread(b, row)), (float)c.r,
-                                         (float)c.g, (float)c.b};
+    lines[count++] = (struct cloud_line){.from = (float)rail_y(rails, a, from + spread(a, row)),
+                                         .to = (float)rail_y(rails, b, to + spread(b, row)),
+                                         .r = (float)c.r,
+                                         .g = (float)c.g,
+                                         .b = (float)c.b,
+                                         .weight = solved ? 1 : heavy};
   }
   return count;
 }
 
-/* Draws the members that failed, or the others. Where an axis is a metric the former end. */
+/* Draws all members; those that failed end where an axis is a metric. */
 static enum status draw_lines(struct canvas *canvas, const struct rails *rails,
-                              const struct study_dots *dots, bool failed, struct error *error) {
-  size_t members = rails->rail[0].axis.table->members, most = 0;
+                              const struct study_dots *dots, struct error *error) {
+  const struct study_table *table = rails->rail[0].axis.table;
+  size_t members = table->members, most = 0;
   struct box area = {rails->rail[0].x, rails->top - 2,
                      rails->rail[rails->count - 1].x - rails->rail[0].x,
                      rails->bottom - rails->top + 4};
   struct cloud *cloud = cloud_create(canvas, area, members > LINES_FINE);
   struct cloud_line *lines = malloc((members + 1) * sizeof *lines);
   struct rgb *colours = malloc((members + 1) * sizeof *colours);
+  enum status status = STATUS_OK;
   if (!cloud || !lines || !colours) {
-    cloud_destroy(cloud);
-    free(lines);
-    free(colours);
-    return error_set(error, STATUS_NO_MEMORY, NULL, "memory ran out for a picture");
+    status = error_set(error, STATUS_NO_MEMORY, NULL, "memory ran out for a picture");
+    goto done;
   }
   for (size_t row = 0; row < members; row++) {
+    bool failed = study_row_failed(table, row);
     struct colour colour = failed ? colour_notice : study_dots_colour(dots, row);
     colours[row] = colour_rgb(colour, canvas->theme);
   }
   for (size_t i = 0; i + 1 < rails->count; i++) {
-    size_t count = make_lines(rails, i, colours, failed, lines);
+    size_t count = make_lines(rails, i, colours, lines);
     most = count > most ? count : most;
     cloud_lines(cloud, rails->rail[i].x, rails->rail[i + 1].x, lines, count, 1.3 * canvas->unit);
   }
   if (most > 0) {
-    cloud_paint(cloud, canvas, cloud_opacity(most) * (failed ? fmin(1, 25.0 / (double)most) : 1));
+    cloud_paint(cloud, canvas, cloud_opacity(most));
     canvas->busy = canvas->busy || most > LINES_FINE;
   }
+done:
   cloud_destroy(cloud);
   free(lines);
   free(colours);
-  return STATUS_OK;
+  return status;
 }
 
 static enum status draw_rails(struct study_panel *panel, struct canvas *canvas, struct rails *rails,
@@ -196,10 +202,7 @@ static enum status draw_rails(struct study_panel *panel, struct canvas *canvas, 
     rails->rail[i].x = round(left + (double)i * gap);
     set_range(&rails->rail[i], rails, canvas);
   }
-  enum status status = draw_lines(canvas, rails, dots, false, error);
-  if (status == STATUS_OK && *panel->notice) {
-    status = draw_lines(canvas, rails, dots, true, error);
-  }
+  enum status status = draw_lines(canvas, rails, dots, error);
   for (size_t i = 0; i < rails->count; i++) {
     draw_scale(canvas, rails, &rails->rail[i], fmin(gap - 12 * u, 84 * u));
     draw_name(canvas, rails, &rails->rail[i], gap, slanted);
