@@ -2,6 +2,7 @@
 
 import { make } from '../dom.js';
 
+const WIDEST = 116; // pixels of a head, so that the last one is within the plot
 const STEP = 0.02; // of the axis, with a key
 const REACH = 16; // pixels to both sides of an axis where a brush begins
 const EDGE = 7; // pixels at an end of a brush where that end is taken
@@ -20,7 +21,7 @@ export class AxisHead {
     this.track.append(this.brush);
     this.element = make('div', { class: `axis-head ${column.isParameter ? 'is-parameter' : 'is-metric'}` }, this.name, this.track);
     this.element.style.left = `${x}px`;
-    this.element.style.width = `${Math.min(Math.max((plot.width - 108) / Math.max(plot.columns.length - 1, 1) - 6, 44), 150)}px`;
+    this.element.style.width = `${Math.min(Math.max((plot.width - 120) / Math.max(plot.columns.length - 1, 1) - 6, 44), WIDEST)}px`;
     this.track.style.height = `${plot.inner}px`;
     plot.place.append(this.element);
     this.name.addEventListener('keydown', (event) => this.nameKey(event));

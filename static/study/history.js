@@ -3,7 +3,7 @@
 import { find } from '../dom.js';
 import { number } from '../format.js';
 import { chartOf } from './chart.js';
-import { pageColour, SERIES } from './paint.js';
+import { lineColour, pageColour, SERIES } from './paint.js';
 
 export class History {
   constructor() {
@@ -28,7 +28,7 @@ export class History {
       yAxis: { type: 'value', scale: true, name: column.label, nameLocation: 'middle', nameGap: 54 },
       tooltip: { trigger: 'axis', valueFormatter: number },
       series: [{ type: 'scatter', name: 'each evaluation', data: points(values), symbolSize: 6, itemStyle: { color: SERIES[4] } },
-        { type: 'line', name: 'best so far', data: points(bests), step: 'end', symbol: 'none', itemStyle: { color: SERIES[0] }, lineStyle: { color: SERIES[0], width: 2.5 } }],
+        { type: 'line', name: 'best so far', data: points(bests), step: 'end', symbol: 'none', itemStyle: { color: lineColour() }, lineStyle: { color: lineColour(), width: 2.5 } }],
     }), `${column.title} of ${values.length} evaluations; best ${number(best)}`);
   }
 }

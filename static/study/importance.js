@@ -3,9 +3,10 @@
 import { find } from '../dom.js';
 import { number } from '../format.js';
 import { chartOf } from './chart.js';
-import { pageColour, SERIES } from './paint.js';
+import { lineColour, pageColour, SERIES } from './paint.js';
 import { Panel } from './panel.js';
 import { analysis } from './source.js';
+import { tickText } from './ticks.js';
 
 function percent(share) {
   return `${Math.round(100 * Math.max(share.value, 0))} %`;
@@ -73,13 +74,13 @@ function effectsOption({ metric, main }, shown, place) {
       name: one.unit ? `${one.title} (${one.unit})` : one.title, nameLocation: 'middle', nameGap: 24,
       nameTextStyle: { fontSize: 11 }, splitLine: { show: false }, splitNumber: 3, axisLabel: { hideOverlap: true } });
     option.yAxis.push({ gridIndex: i, type: 'value', min: least, max: most, splitNumber: 3,
-      axisLabel: { show: i % across === 0, formatter: (value) => number(Number(value.toPrecision(3))) } });
+      axisLabel: { show: i % across === 0, formatter: (value) => tickText(Number(value.toPrecision(3))) } });
     option.series.push(
       { ...axes, type: 'line', stack: `band ${i}`, stackStrategy: 'all', data: points(one.low), lineStyle: { opacity: 0 }, symbol: 'none', silent: true, tooltip: { show: false } },
       { ...axes, type: 'line', stack: `band ${i}`, stackStrategy: 'all', data: points(one.high.map((high, k) => high - one.low[k])), lineStyle: { opacity: 0 },
         symbol: 'none', silent: true, areaStyle: { color: SERIES[4], opacity: 0.3 }, tooltip: { show: false } },
-      { ...axes, type: 'line', name: metric.title, data: points(one.mean), symbol: isWord ? 'circle' : 'none', symbolSize: 7, itemStyle: { color: SERIES[0] },
-        lineStyle: { color: SERIES[0], width: 2.5, type: isWord ? 'dotted' : 'solid' } });
+      { ...axes, type: 'line', name: metric.title, data: points(one.mean), symbol: isWord ? 'circle' : 'none', symbolSize: 7, itemStyle: { color: lineColour() },
+        lineStyle: { color: lineColour(), width: 2.5, type: isWord ? 'dotted' : 'solid' } });
   });
   return option;
 }

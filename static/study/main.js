@@ -15,7 +15,7 @@ import { setUpQuality } from './quality.js';
 import { Ranking } from './ranking.js';
 import { Search, designText, solve } from './search.js';
 import { Slice } from './slice.js';
-import { columns, studyUrl, summary } from './source.js';
+import { about, columns, studyUrl, summary } from './source.js';
 import { Status } from './status.js';
 import { dark } from './paint.js';
 
@@ -91,7 +91,8 @@ function usualObjectives() {
   if (metric === '') {
     return [];
   }
-  const cost = metrics.find(({ key }) => key !== metric && /^(mass|max_|cavity_volume)/.test(key)) ?? metrics.find(({ key }) => key !== metric);
+  const cost = metrics.find(({ key }) => key !== metric && key.startsWith('mass')) ??
+    metrics.find(({ key }) => key !== metric && /^(max_|cavity_volume)/.test(key)) ?? metrics.find(({ key }) => key !== metric);
   return [['max', metric], ...(cost ? [['min', cost.key]] : [])];
 }
 
@@ -108,6 +109,7 @@ function setUp() {
   if (designs.count === 0) {
     return;
   }
+  about(designs);
   setUpMetric();
   explorer = new Explorer(designs, address, designs.byKey.get(metric));
   const key = () => metric;
@@ -123,6 +125,7 @@ function setUp() {
   });
   const ranking = new Ranking(designs, address, usual.map(([way, name]) => [way, name, 1]), Boolean(wanted.ranking));
   const search = new Search(designs, address, { metric, goal: usual[1]?.[1] ?? metric });
+  panels.forEach((panel) => panel.retire());
   parts = [slice, pareto, ranking, search];
   panels = [importance, effects, quality, slice.panel, pareto.panel, ranking];
   for (const [name, chart] of [['slice', slice.chart], ['history', history.chart]]) {
@@ -158,6 +161,7 @@ async function takeDesigns(isOver) {
   const isSame = explorer && kind(next) === kind(designs);
   designs = next;
   if (isSame) {
+    about(designs);
     explorer.take(designs);
     parts.forEach((part) => {
       part.designs = designs;

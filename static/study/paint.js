@@ -24,6 +24,11 @@ export function shadeText(t) {
   return `rgb(${shade(t).join(',')})`;
 }
 
+// The colour of a line that stands for itself.
+export function lineColour() {
+  return dark.matches ? SERIES[4] : SERIES[0];
+}
+
 // What follows from the colours of the page is worked out once for each of the two.
 const kept = new Map();
 dark.addEventListener('change', () => kept.clear());

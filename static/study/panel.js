@@ -24,9 +24,15 @@ export class Panel {
     }
   }
 
+  // Another one takes its place.
+  retire() {
+    this.isRetired = true;
+    this.turn += 1;
+  }
+
   // Asks anew; an answer that comes after a later question is left alone.
   async renew() {
-    if (!this.isSeen) {
+    if (!this.isSeen || this.isRetired) {
       return;
     }
     const turn = ++this.turn;

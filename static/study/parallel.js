@@ -1,16 +1,16 @@
 // Parallel coordinates: an axis a column, a line a design. Lines are drawn as a density, brushes are
 // elements that the keyboard reaches, and a range of an axis is one of the selection.
 
-import { make } from '../dom.js';
 import { addCanvas, eachFrame, fit, followSize, sharpness } from './canvas.js';
 import { Density } from './density.js';
-import { pageColour, pageParts, rowShades, shades } from './paint.js';
+import { pageColour, pageParts, rowShades, shadeText, shades } from './paint.js';
 import { AxisHead } from './axis.js';
 import { ticksOf } from './ticks.js';
 
 const TOP = 62; // heads of the axes
 const BOTTOM = 14;
-const SIDE = 54;
+const SIDE = 60;
+const FEW = 400; // lines up to which each is drawn by itself
 const MANY = 1500; // lines from which one pixel of the page is sharp enough
 
 export class Parallel {
@@ -154,9 +154,52 @@ export class Parallel {
     this.due.length = 0;
   }
 
+  // Lines of their own, those without the value that gives the colour quietly.
+  paintFew() {
+    const { selection, designs, colour } = this;
+    const context = this.front.getContext('2d');
+    const tall = (this.front.height - 2) / this.scale;
+    context.setTransform(this.scale, 0, 0, this.scale, 0, 0);
+    context.clearRect(0, 0, this.width, this.inner);
+    context.lineWidth = 1.4;
+    context.lineJoin = 'round';
+    for (const isSelected of [false, true]) {
+      for (let row = 0; row < designs.count; row++) {
+        if (selection.has(row) === isSelected) {
+          const hasColour = isSelected && !(colour && Number.isNaN(colour.data[row]));
+          context.strokeStyle = hasColour ? shadeText(this.shades[row] / 255) : pageColour('plot-quiet');
+          this.stroke(context, row, (place) => 1 + (1 - place) * tall);
+        }
+      }
+    }
+    this.back.style.opacity = '0';
+  }
+
+  // The line of a design; it has a gap where a value is missing.
+  stroke(context, row, y) {
+    let isOn = false;
+    context.beginPath();
+    this.places.forEach((places, axis) => {
+      const place = places[row];
+      if (place !== place) {
+        isOn = false;
+      } else if (isOn) {
+        context.lineTo(this.x(axis), y(place));
+      } else {
+        context.moveTo(this.x(axis), y(place));
+        isOn = true;
+      }
+    });
+    context.stroke();
+  }
+
   paint() {
     const { designs, selection } = this;
     if (!this.gaps) {
+      return;
+    }
+    if (designs.count <= FEW) {
+      this.paintFew();
       return;
     }
     this.drawChosen();
@@ -276,13 +319,7 @@ export class Parallel {
     for (const [width, colour] of [[5, 'card'], [2.5, 'ink']]) {
       context.lineWidth = width;
       context.strokeStyle = pageColour(colour);
-      context.beginPath();
-      this.places.forEach((places, axis) => {
-        if (places[row] === places[row]) {
-          context.lineTo(this.x(axis), this.y(places[row]));
-        }
-      });
-      context.stroke();
+      this.stroke(context, row, (place) => this.y(place));
     }
   }
 }
@@ -290,8 +327,4 @@ export class Parallel {
 // What the axes show together, for people who do not see them.
 export function axesText(designs, columns) {
   return `${designs.count} designs on ${columns.length} axes: ${columns.map(({ label }) => label).join(', ')}`;
-}
-
-export function emptyNote() {
-  return make('p', { class: 'muted' }, 'Choose at least two columns.');
 }

@@ -2,6 +2,7 @@
 
 import { find, make } from '../dom.js';
 import { number } from '../format.js';
+import { offered } from './offer.js';
 import { Panel } from './panel.js';
 import { analysis } from './source.js';
 
@@ -30,7 +31,10 @@ export class Pareto {
       select.addEventListener('change', () => this.choose(column.key, select.value));
       return make('div', { class: 'choice' }, make('label', { for: id }, column.title), select);
     };
-    find('objectives').replaceChildren(...this.designs.metrics.filter(({ varies }) => varies).map(choice));
+    find('objectives').replaceChildren(...offered(this.designs, this.objectives, (key) => {
+      this.choose(key, 'max');
+      this.showChoice();
+    }, choice));
   }
 
   choose(key, direction) {

@@ -3,7 +3,7 @@
 import { find } from '../dom.js';
 import { number } from '../format.js';
 import { chartOf } from './chart.js';
-import { pageColour, SERIES } from './paint.js';
+import { lineColour, pageColour, SERIES } from './paint.js';
 import { Panel } from './panel.js';
 import { analysis } from './source.js';
 
@@ -25,7 +25,7 @@ function option({ metric, left_out: { known, predicted, deviation, jobs } }) {
         const [, bottom] = api.coord([api.value(0), api.value(1) - api.value(2)]);
         return { type: 'line', shape: { x1: x, y1: top, x2: x, y2: bottom }, style: { stroke: SERIES[4], opacity: 0.5 } };
       } },
-      { type: 'scatter', data, symbolSize: data.length > 200 ? 4 : 6, itemStyle: { color: SERIES[0] } },
+      { type: 'scatter', data, symbolSize: data.length > 200 ? 4 : 6, itemStyle: { color: lineColour() } },
     ],
   };
 }

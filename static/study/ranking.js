@@ -1,6 +1,7 @@
 // Designs in the order of a weighted mean of their normalised metrics.
 
 import { find, make } from '../dom.js';
+import { offered } from './offer.js';
 import { SERIES } from './paint.js';
 import { Panel } from './panel.js';
 import { analysis } from './source.js';
@@ -45,9 +46,17 @@ export class Ranking {
     return this.panel.renew();
   }
 
+  retire() {
+    this.panel.retire();
+  }
+
   showWeights() {
     find('ranking-weights').hidden = this.isPreset;
-    find('ranking-weights').replaceChildren(...this.designs.metrics.filter(({ varies }) => varies).map((column) => this.weight(column)));
+    find('ranking-weights').replaceChildren(...offered(this.designs, this.criteria, (key) => {
+      this.criteria.set(key, ['max', 1]);
+      this.showWeights();
+      this.follow();
+    }, (column) => this.weight(column)));
   }
 
   weight(column) {
@@ -64,15 +73,19 @@ export class Ranking {
       } else {
         this.criteria.delete(column.key);
       }
-      clearTimeout(this.timer);
-      this.timer = setTimeout(() => {
-        this.address.set('rank', this.text());
-        this.panel.renew();
-      }, PAUSE_MS);
+      this.follow();
     };
     select.addEventListener('change', follow);
     range.addEventListener('input', follow);
     return make('div', { class: 'slider weight' }, make('label', { for: id }, column.title), select, range);
+  }
+
+  follow() {
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => {
+      this.address.set('rank', this.text());
+      this.renew();
+    }, PAUSE_MS);
   }
 
   text() {

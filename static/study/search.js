@@ -5,6 +5,7 @@ import { find, make } from '../dom.js';
 import { number } from '../format.js';
 import { showProblem } from '../problem.js';
 import { analysis, confirm } from './source.js';
+import { tickText } from './ticks.js';
 
 // What solving a predicted design says, at its place.
 export async function solve(values, button, place) {
@@ -80,7 +81,7 @@ export class Search {
   line(one, metrics) {
     const values = metrics.map(({ key }) => one.metrics.find((metric) => metric.key === key));
     const cells = values.map((metric) => make('td', { class: 'number' }, number(metric?.value),
-      typeof metric?.deviation === 'number' ? make('span', { class: 'muted' }, ` ± ${number(Number((1.96 * metric.deviation).toPrecision(2)))}`) : null));
+      typeof metric?.deviation === 'number' ? make('span', { class: 'muted' }, ` ± ${tickText(Number((1.96 * metric.deviation).toPrecision(2)))}`) : null));
     return make('tr', { class: one.predicted ? 'predicted' : null },
       make('th', { scope: 'row' }, one.predicted ? designText(this.designs, one.values) : make('a', { href: `/jobs/${one.job}` }, one.name || `design ${one.member}`)),
       ...cells, this.source(one));

@@ -4,7 +4,7 @@
 import { find, make } from '../dom.js';
 import { number } from '../format.js';
 import { chartOf } from './chart.js';
-import { pageColour, shadeText } from './paint.js';
+import { lineColour, pageColour, shadeText } from './paint.js';
 import { Panel } from './panel.js';
 import { analysis } from './source.js';
 import { tickText } from './ticks.js';
@@ -34,7 +34,7 @@ function mapOption(answer, shows) {
     visualMap: {
       type: 'continuous', min: Math.min(...all), max: Math.max(...all), calculable: false, right: 0, top: 'middle',
       itemWidth: 12, itemHeight: 150, precision: 3, inRange: { color: words }, textStyle: { color: pageColour('ink'), fontSize: 11 },
-      text: [number(Number(Math.max(...all).toPrecision(3))), number(Number(Math.min(...all).toPrecision(3)))],
+      text: [Math.max(...all), Math.min(...all)].map((value) => tickText(Number(value.toPrecision(3)))),
     },
     tooltip: {
       formatter: ({ value: [i, j] }) => `${x.title} ${typeof x.values[i] === 'number' ? number(x.values[i]) : x.values[i]} ${x.unit}\n${y.title} ${
@@ -62,8 +62,8 @@ function lineOption(answer) {
     series: [
       { ...band, data: points((value, i) => value - 1.96 * deviation[i]), tooltip: { show: false } },
       { ...band, data: points((value, i) => 3.92 * deviation[i]), areaStyle: { color: '#56b4e9', opacity: 0.3 }, tooltip: { show: false } },
-      { type: 'line', name: metric.title, data: points((value) => value), symbol: isWord ? 'circle' : 'none', itemStyle: { color: '#0072b2' },
-        lineStyle: { color: '#0072b2', width: 2.5 } },
+      { type: 'line', name: metric.title, data: points((value) => value), symbol: isWord ? 'circle' : 'none', itemStyle: { color: lineColour() },
+        lineStyle: { color: lineColour(), width: 2.5 } },
     ],
   };
 }

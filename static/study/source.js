@@ -20,13 +20,20 @@ export function columns() {
   return request(studyUrl('/designs', { format: 'columns' }));
 }
 
+const LEAST = 4; // designs that a surrogate is made of
 const kept = new Map(); // answers by address
-let version = 0; // of the data
+let designs = null;
+
+// The designs that analyses are of.
+export function about(these) {
+  designs = these;
+}
 
 // An analysis, kept until there are new data.
 export function analysis(name, query) {
-  if (query.metric === '') {
-    return Promise.reject(new Error('No design has a metric yet.'));
+  const column = designs.byKey.get(query.metric);
+  if (query.metric !== undefined && !(column && column.data.filter((value) => value === value).length >= LEAST)) {
+    return Promise.reject(new Error(`At least ${LEAST} designs have to be solved first.`));
   }
   const url = studyUrl(`/${name}`, query);
   if (!kept.has(url)) {
@@ -39,11 +46,6 @@ export function analysis(name, query) {
 
 export function forget() {
   kept.clear();
-  version += 1;
-}
-
-export function dataVersion() {
-  return version;
 }
 
 export function extend(size) {
