@@ -137,6 +137,7 @@ static void draw_scales(struct canvas *canvas, const struct matrix *m, size_t k)
   struct ticks ticks = few_ticks(canvas, m, k, m->width);
   const struct study_column *column = m->axis[k].column;
   int count = column->categorical ? (int)column->word_count : ticks.count;
+  double reached = -INFINITY; /* right end of the last number below */
   for (int i = 0; i < count; i++) {
     char number[TICKS_TEXT];
     const char *text = number;
@@ -153,7 +154,10 @@ static void draw_scales(struct canvas *canvas, const struct matrix *m, size_t k)
     style.max_width = place - 2 * u;
     canvas_set_colour(canvas, colour_muted);
     canvas_line(canvas, x, bottom, x, bottom + 3 * u, 1);
-    if (place > 16 * u) {
+    double width, height;
+    canvas_measure(canvas, text, &style, &width, &height);
+    if (place > 16 * u && x - width / 2 > reached) {
+      reached = x + width / 2 + 5 * u;
       canvas_text(canvas, x, bottom + 4 * u, 0.5, 0, text, &style);
     }
     if (k > 0) {

@@ -148,7 +148,7 @@ static void draw_body(struct canvas *canvas, const struct fit *fit, struct box b
   cairo_set_line_join(canvas->cr, CAIRO_LINE_JOIN_ROUND);
   cairo_stroke(canvas->cr);
   /* the wall that holds the base */
-  double wall = fmin(9 * canvas->unit, 0.2 * box.height);
+  double wall = fmin(5 * canvas->unit, 0.2 * box.height);
   canvas_set_colour(canvas, colour_muted);
   canvas_line(canvas, x0, y0 - wall, x0, y0 + wall, 2);
 }
