@@ -107,7 +107,9 @@ struct pneunet_cells pneunet_resolution(const struct job_spec *spec) {
   limit(p->cavity_length, tier->cavity * height, &cells.cavity);
   limit(0.5 * p->width - p->side_wall - inner_start(p), tier->half_width * height,
         &cells.half_width);
-  if (p->cavity_length > squat_ratio * height) {
+  if (spec->accuracy == ACCURACY_DRAFT) {
+    /* the same cells whatever the proportions: designs stay neighbours for warm starts */
+  } else if (p->cavity_length > squat_ratio * height) {
     cells.gap_wall.cells++;
     cells.height.cells++;
   } else if (spec->accuracy == ACCURACY_STANDARD &&

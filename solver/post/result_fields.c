@@ -31,6 +31,10 @@ json_t *result_warnings(const struct result *r) {
   for (size_t i = 0; i < r->sample_count; i++) {
     reached = fmax(reached, r->sample[i].max_stretch);
   }
+  if (r->spec->accuracy == ACCURACY_DRAFT) {
+    json_array_append_new(list, json_string("a draft: the mesh is coarser than that of fast, to "
+                                            "compare many designs; confirm this one at standard"));
+  }
   if (!material_stable_to(m, reached, &unstable)) {
     json_array_append_new(
         list, json_sprintf("the material's tangent is not positive beyond a stretch of %.3f in "
