@@ -1,6 +1,6 @@
 // Charts of ECharts in the colours of the page. The library is loaded when the first one comes into sight.
 
-import { dark, pageColour } from './paint.js';
+import { onColours, pageColour } from './paint.js';
 
 let library = null;
 
@@ -39,7 +39,7 @@ class Chart {
     this.chart = null;
     this.onClick = null; // gets the events of ECharts
     new ResizeObserver(() => this.chart && this.draw(true)).observe(place);
-    dark.addEventListener('change', () => this.renew());
+    onColours(() => this.renew());
   }
 
   // build: makes the options with the colours and the size of the time. text: what the chart shows, in
@@ -67,11 +67,10 @@ class Chart {
     this.chart.setOption({ animation: false, ...this.build() }, { notMerge: true });
   }
 
-  // Colours belong to the chart from its beginning.
+  // In other colours.
   renew() {
     if (this.chart) {
-      this.chart.dispose();
-      this.start();
+      this.chart.setTheme(theme());
       this.draw(false);
     }
   }

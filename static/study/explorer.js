@@ -133,6 +133,15 @@ export class Explorer {
     this.showLegend();
   }
 
+  // In other colours, at once: paper does not wait for the next picture.
+  repaint() {
+    this.recolour(this.metric);
+    this.parallel.paint();
+    this.scatter.paint();
+    this.table.arrange();
+    this.table.fill();
+  }
+
   // One design that is pointed at, in all views.
   point(row, event) {
     this.parallel.show(row);

@@ -17,7 +17,7 @@ import { Search, designText, solve } from './search.js';
 import { Slice } from './slice.js';
 import { about, columns, studyUrl, summary } from './source.js';
 import { Status } from './status.js';
-import { dark } from './paint.js';
+import { onColours } from './paint.js';
 
 const address = new Address();
 const history = new History();
@@ -203,7 +203,7 @@ async function start() {
   status.start(study);
   setUp();
   setUpDownloads(() => designs, () => explorer?.selection, charts, curlLines);
-  dark.addEventListener('change', () => explorer?.recolour(designs.byKey.get(metric)));
+  onColours(() => explorer?.repaint());
   requestAnimationFrame(() => setTimeout(() => {
     performance.mark('study-usable');
     readDocument().catch(() => {}); // without it the page is only less well informed

@@ -5,11 +5,12 @@ const MAP = [[68, 1, 84], [70, 50, 126], [54, 92, 141], [39, 127, 142], [31, 161
 
 export const SERIES = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#56b4e9', '#e69f00'];
 
-export const dark = window.matchMedia('(prefers-color-scheme: dark)');
+const dark = window.matchMedia('(prefers-color-scheme: dark)');
+const print = window.matchMedia('print'); // always on white
 
 // On a light page its yellow end, and on a dark one its dark end, would not be seen as a line.
 function ends() {
-  return dark.matches ? [0.22, 1] : [0, 0.9];
+  return dark.matches && !print.matches ? [0.22, 1] : [0, 0.9];
 }
 
 // Red, green and blue at t in 0 .. 1.
@@ -26,12 +27,21 @@ export function shadeText(t) {
 
 // The colour of a line that stands for itself.
 export function lineColour() {
-  return dark.matches ? SERIES[4] : SERIES[0];
+  return dark.matches && !print.matches ? SERIES[4] : SERIES[0];
 }
 
 // What follows from the colours of the page is worked out once for each of the two.
 const kept = new Map();
-dark.addEventListener('change', () => kept.clear());
+
+// Calls back when the colours are others: for a dark page, or for paper.
+export function onColours(listener) {
+  for (const query of [dark, print]) {
+    query.addEventListener('change', () => {
+      kept.clear();
+      listener();
+    });
+  }
+}
 
 function once(name, make) {
   if (!kept.has(name)) {
