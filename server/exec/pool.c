@@ -152,13 +152,6 @@ void slot_finish(struct slot *slot, const struct slot_job *job, struct outcome *
   }
 }
 
-/* Processes that the worker of a study may run at a time: a share of the cores, so that all workers
- * together keep as many busy as there are. */
-static unsigned study_jobs(const struct pool_settings *settings) {
-  long cores = sysconf(_SC_NPROCESSORS_ONLN);
-  return cores > settings->workers ? (unsigned)cores / settings->workers : 1;
-}
-
 /* The least of the limits of the daemon and the job, 0: none. */
 static uint64_t memory_limit(const struct pool_settings *settings, const struct claim *claim) {
   uint64_t most = settings->memory_limit_bytes, own = claim->memory_bytes;
@@ -173,7 +166,6 @@ void slot_run_settings(const struct slot *slot, const struct claim *claim,
                                .isolation = settings->isolation,
                                .memory_limit_bytes = memory_limit(settings, claim),
                                .files_limit_bytes = settings->files_limit_bytes,
-                               .study_jobs = study_jobs(settings),
                                .time_limit_s = settings->time_limit_s,
                                .timeout_margin_s = settings->timeout_margin_s};
 }

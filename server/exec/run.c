@@ -41,16 +41,13 @@ enum status run_prepare(const struct run_settings *settings, const struct claim 
 
 static enum status run_start(const struct run_settings *settings, const struct run_paths *paths,
                              double time_limit_s, struct process *process, struct error *error) {
-  char jobs[16];
-  snprintf(jobs, sizeof jobs, "%u", settings->study_jobs);
-  const char *argv[] = {
-      settings->solver, "--out", paths->artifacts, "--events", paths->events, "--threads", "1",
-      "--jobs",         jobs,    paths->job,       NULL};
+  const char *argv[] = {settings->solver, "--out", paths->artifacts, "--events", paths->events,
+                        "--threads",      "1",     paths->job,       NULL};
   struct process_limits limits = {.memory_bytes = settings->memory_limit_bytes,
                                   .cpu_s = (uint64_t)ceil(time_limit_s) + 1,
                                   .file_bytes = OUTPUT_BYTES_MAX,
                                   .descriptors = DESCRIPTORS_MAX,
-                                  .processes = PROCESSES_MAX + settings->study_jobs};
+                                  .processes = PROCESSES_MAX};
   const char *folders[] = {paths->directory, NULL};
   return process_start(argv, paths->output, paths->log, folders, &limits, settings->isolation,
                        process, error);

@@ -14,7 +14,6 @@ struct run_settings {
   const struct isolation *isolation;
   uint64_t memory_limit_bytes; /* of each process */
   uint64_t files_limit_bytes;  /* of all files of an attempt; 0: none */
-  unsigned study_jobs;         /* members of a study that its worker may solve at a time */
   double time_limit_s;
   double timeout_margin_s;
 };

@@ -214,6 +214,7 @@ int main(void) {
   Suite *suite = suite_create("store_study");
   TCase *tests = tcase_create("store_study");
   tcase_add_checked_fixture(tests, store_setup, store_teardown);
+  tcase_set_timeout(tests, 120);
   tcase_add_test(tests, a_study_takes_no_worker);
   tcase_add_test(tests, a_submitter_has_a_few_at_a_time);
   tcase_add_test(tests, members_are_stored_once);

@@ -86,6 +86,7 @@ int main(void) {
   Suite *suite = suite_create("study_table");
   TCase *table = tcase_create("table");
   tcase_add_checked_fixture(table, store_setup, store_teardown);
+  tcase_set_timeout(table, 120);
   tcase_add_test(table, test_rows_and_columns);
   tcase_add_test(table, test_other_jobs);
   suite_add_tcase(suite, table);
