@@ -18,10 +18,13 @@ export class Address {
 
   // Ranges as [key, low, high]: "in.KEY=LOW..HIGH".
   ranges() {
-    return [...this.query].filter(([name]) => name.startsWith('in.')).map(([name, value]) => {
-      const [low, high] = value.split('..').map(Number);
-      return [name.slice(3), low, high];
-    }).filter(([, low, high]) => low <= high);
+    return [...this.query]
+      .filter(([name]) => name.startsWith('in.'))
+      .map(([name, value]) => {
+        const [low, high] = value.split('..').map(Number);
+        return [name.slice(3), low, high];
+      })
+      .filter(([, low, high]) => low <= high);
   }
 
   setRanges(ranges) {
@@ -48,7 +51,11 @@ export class Address {
     clearTimeout(this.timer);
     this.timer = setTimeout(() => {
       const text = this.query.toString().replaceAll('%2F', '/').replaceAll('%2C', ',').replaceAll('%3A', ':');
-      window.history.replaceState(null, '', `${window.location.pathname}${text ? `?${text}` : ''}${window.location.hash}`);
+      window.history.replaceState(
+        null,
+        '',
+        `${window.location.pathname}${text ? `?${text}` : ''}${window.location.hash}`,
+      );
     }, PAUSE_MS);
   }
 }

@@ -11,15 +11,39 @@ export class AxisHead {
   constructor(plot, column, index) {
     Object.assign(this, { plot, column, index });
     const x = plot.x(index);
-    this.name = make('button', { type: 'button', class: 'axis-name', title: `${column.label}. Drag or use ← and → to move the axis${
-      column.canBeLogarithmic ? '; press L for a logarithmic scale' : ''}.` },
-    make('span', { class: 'axis-title' }, column.title),
-    make('span', { class: 'axis-unit' }, [column.unit, column.isLogarithmic ? 'log' : ''].filter(Boolean).join(' · ') || '\u00a0'));
-    this.track = make('div', { class: 'axis-track', role: 'slider', tabindex: 0, 'aria-orientation': 'vertical',
-      'aria-label': `Range of ${column.label}`, 'aria-valuemin': 0, 'aria-valuemax': 100 });
+    this.name = make(
+      'button',
+      {
+        type: 'button',
+        class: 'axis-name',
+        title: `${column.label}. Drag or use ← and → to move the axis${
+          column.canBeLogarithmic ? '; press L for a logarithmic scale' : ''
+        }.`,
+      },
+      make('span', { class: 'axis-title' }, column.title),
+      make(
+        'span',
+        { class: 'axis-unit' },
+        [column.unit, column.isLogarithmic ? 'log' : ''].filter(Boolean).join(' · ') || '\u00a0',
+      ),
+    );
+    this.track = make('div', {
+      class: 'axis-track',
+      role: 'slider',
+      tabindex: 0,
+      'aria-orientation': 'vertical',
+      'aria-label': `Range of ${column.label}`,
+      'aria-valuemin': 0,
+      'aria-valuemax': 100,
+    });
     this.brush = make('div', { class: 'axis-brush', hidden: true });
     this.track.append(this.brush);
-    this.element = make('div', { class: `axis-head ${column.isParameter ? 'is-parameter' : 'is-metric'}` }, this.name, this.track);
+    this.element = make(
+      'div',
+      { class: `axis-head ${column.isParameter ? 'is-parameter' : 'is-metric'}` },
+      this.name,
+      this.track,
+    );
     this.element.style.left = `${x}px`;
     this.element.style.width = `${Math.min(Math.max((plot.width - 120) / Math.max(plot.columns.length - 1, 1) - 6, 44), WIDEST)}px`;
     this.track.style.height = `${plot.inner}px`;
@@ -68,7 +92,7 @@ export class AxisHead {
     const up = (event) => {
       this.name.removeEventListener('pointermove', move);
       this.element.style.translate = '';
-      const gap = (plot.x(1) - plot.x(0)) || 1;
+      const gap = plot.x(1) - plot.x(0) || 1;
       const by = Math.round((event.clientX - start) / gap);
       if (by !== 0) {
         plot.move(this.index, by);
@@ -91,7 +115,12 @@ export class AxisHead {
   follow() {
     const places = this.places();
     this.brush.hidden = !places;
-    const text = places ? this.plot.selection.range(this.column.key).map((value) => this.edgeText(value)).join(' to ') : 'all';
+    const text = places
+      ? this.plot.selection
+          .range(this.column.key)
+          .map((value) => this.edgeText(value))
+          .join(' to ')
+      : 'all';
     this.track.setAttribute('aria-valuetext', text);
     this.track.setAttribute('aria-valuenow', places ? Math.round(50 * (places[0] + places[1])) : 50);
     if (places) {
@@ -101,7 +130,8 @@ export class AxisHead {
   }
 
   edgeText(value) {
-    return this.column.words ? this.column.text(Math.min(Math.max(value, 0), this.column.words.length - 1))
+    return this.column.words
+      ? this.column.text(Math.min(Math.max(value, 0), this.column.words.length - 1))
       : this.column.textWithUnit(value);
   }
 
@@ -119,7 +149,8 @@ export class AxisHead {
     const by = { ArrowUp: STEP, ArrowDown: -STEP, PageUp: 5 * STEP, PageDown: -5 * STEP }[event.key];
     if (by) {
       event.preventDefault();
-      if (event.shiftKey) { // the upper end alone
+      if (event.shiftKey) {
+        // the upper end alone
         this.set(low, Math.max(high + by, low));
       } else if (low <= 0 && high >= 1) {
         this.set(by > 0 ? by : 0, by > 0 ? 1 : 1 + by);
@@ -163,7 +194,8 @@ export class AxisHead {
     };
     const up = () => {
       this.track.removeEventListener('pointermove', move);
-      if (!hasMoved) { // a click takes the brush away
+      if (!hasMoved) {
+        // a click takes the brush away
         this.plot.selection.limit(this.column.key, null);
       }
     };

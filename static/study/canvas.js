@@ -82,8 +82,13 @@ export function joined(place, background) {
   const from = place.getBoundingClientRect();
   for (const layer of layers) {
     const at = layer.getBoundingClientRect();
-    context.drawImage(layer, (at.left - from.left) * scale, (at.top - from.top) * scale, at.width * scale,
-      at.height * scale);
+    context.drawImage(
+      layer,
+      (at.left - from.left) * scale,
+      (at.top - from.top) * scale,
+      at.width * scale,
+      at.height * scale,
+    );
   }
   return canvas;
 }

@@ -92,11 +92,14 @@ export function chartOf(place) {
 
 // Calls `start` once when a part of the page first comes near the window.
 export function whenSeen(place, start) {
-  const watcher = new IntersectionObserver((entries) => {
-    if (entries.some(({ isIntersecting }) => isIntersecting)) {
-      watcher.disconnect();
-      start();
-    }
-  }, { rootMargin: '200px' });
+  const watcher = new IntersectionObserver(
+    (entries) => {
+      if (entries.some(({ isIntersecting }) => isIntersecting)) {
+        watcher.disconnect();
+        start();
+      }
+    },
+    { rootMargin: '200px' },
+  );
   watcher.observe(place);
 }

@@ -85,7 +85,8 @@ export class Density {
       const weight = sums[2 * i];
       if (weight > 0) {
         const c = 3 * ((sums[2 * i + 1] / weight) | 0);
-        out[i] = alpha[weight < most ? weight : most] << 24 | colours[c + 2] << 16 | colours[c + 1] << 8 | colours[c];
+        out[i] =
+          (alpha[weight < most ? weight : most] << 24) | (colours[c + 2] << 16) | (colours[c + 1] << 8) | colours[c];
       } else {
         out[i] = 0;
       }

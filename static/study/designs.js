@@ -2,8 +2,18 @@
 
 import { number } from '../format.js';
 
-export const STATES = ['queued', 'held', 'starting', 'running', 'cancelling', 'retry_wait', 'succeeded', 'failed',
-  'timed_out', 'cancelled'];
+export const STATES = [
+  'queued',
+  'held',
+  'starting',
+  'running',
+  'cancelling',
+  'retry_wait',
+  'succeeded',
+  'failed',
+  'timed_out',
+  'cancelled',
+];
 
 function extent(data) {
   let low = Infinity;
@@ -31,7 +41,8 @@ export class Column {
     this.data = Float64Array.from(values, (value) => this.numberOf(value));
     [this.low, this.high] = this.words ? [-0.5, Math.max(this.words.length - 0.5, 0.5)] : extent(this.data);
     // what differs by rounding alone does not vary
-    this.varies = this.words ? new Set(this.data.filter((v) => v === v)).size > 1
+    this.varies = this.words
+      ? new Set(this.data.filter((v) => v === v)).size > 1
       : this.high - this.low > 1e-6 * Math.max(Math.abs(this.low), Math.abs(this.high));
     this.canBeLogarithmic = !this.words && this.low > 0;
     this.isLogarithmic = this.canBeLogarithmic && description.logarithmic === true;
@@ -54,7 +65,7 @@ export class Column {
     if (value !== value) {
       return '–';
     }
-    return this.words ? this.words[Math.round(value)] ?? '–' : number(value);
+    return this.words ? (this.words[Math.round(value)] ?? '–') : number(value);
   }
 
   textWithUnit(value) {
@@ -72,9 +83,7 @@ export class Column {
 
   // The value at a place.
   at(place) {
-    return this.isLogarithmic
-      ? this.low * (this.high / this.low) ** place
-      : this.low + place * (this.high - this.low);
+    return this.isLogarithmic ? this.low * (this.high / this.low) ** place : this.low + place * (this.high - this.low);
   }
 
   // The places of all values as numbers of 32 bits.

@@ -36,7 +36,7 @@ export function stamp({ width, data }, cells, x, y, colours, at, opacity) {
   for (let k = 0; k < cells.length; k += 3) {
     const i = 4 * ((y + cells[k + 1]) * width + x + cells[k]);
     const share = cells[k + 2] * opacity;
-    const under = data[i + 3] / 255 * (1 - share);
+    const under = (data[i + 3] / 255) * (1 - share);
     const whole = share + under;
     data[i] = (red * share + data[i] * under) / whole;
     data[i + 1] = (green * share + data[i + 1] * under) / whole;

@@ -17,15 +17,30 @@ function quoted(text) {
 
 // The selected designs as a table for spreadsheets.
 function selectedTable(designs, selection) {
-  const head = ['member', 'job', 'name', 'state', ...designs.columns.map(({ key, unit }) => (unit ? `${key} (${unit})` : key))];
-  const lines = [...selection.rows()].map((row) => [designs.members[row], designs.jobs[row], designs.name(row), designs.state(row),
-    ...designs.columns.map(({ data, words }) => (data[row] !== data[row] ? '' : words ? words[data[row]] : data[row]))]);
+  const head = [
+    'member',
+    'job',
+    'name',
+    'state',
+    ...designs.columns.map(({ key, unit }) => (unit ? `${key} (${unit})` : key)),
+  ];
+  const lines = [...selection.rows()].map((row) => [
+    designs.members[row],
+    designs.jobs[row],
+    designs.name(row),
+    designs.state(row),
+    ...designs.columns.map(({ data, words }) => (data[row] !== data[row] ? '' : words ? words[data[row]] : data[row])),
+  ]);
   return [head, ...lines].map((line) => line.map((cell) => quoted(String(cell))).join(',')).join('\r\n');
 }
 
-const FILES = [['All designs (CSV)', () => studyUrl('/export.csv')], ['For Optuna (CSV)', () => studyUrl('/export.csv', { format: 'optuna' })],
-  ['All designs (JSON)', () => studyUrl('/designs', { format: 'columns' })], ['Result (JSON)', () => jobUrl(id, '/result')],
-  ['Document (JSON)', () => jobUrl(id, '/document')]];
+const FILES = [
+  ['All designs (CSV)', () => studyUrl('/export.csv')],
+  ['For Optuna (CSV)', () => studyUrl('/export.csv', { format: 'optuna' })],
+  ['All designs (JSON)', () => studyUrl('/designs', { format: 'columns' })],
+  ['Result (JSON)', () => jobUrl(id, '/result')],
+  ['Document (JSON)', () => jobUrl(id, '/document')],
+];
 
 // lines(): [what, curl line] as the page is now. charts: id of a section -> what makes its picture.
 export function setUpDownloads(designs, selection, charts, lines) {
@@ -38,7 +53,10 @@ export function setUpDownloads(designs, selection, charts, lines) {
     save(url, `study-${id}-selected.csv`);
     setTimeout(() => URL.revokeObjectURL(url), 1000);
   });
-  find('files').replaceChildren(...FILES.map(([name, url]) => make('li', {}, make('a', { href: url(), download: true }, name))), make('li', {}, selected));
+  find('files').replaceChildren(
+    ...FILES.map(([name, url]) => make('li', {}, make('a', { href: url(), download: true }, name))),
+    make('li', {}, selected),
+  );
   for (const button of document.querySelectorAll('[data-picture]')) {
     button.addEventListener('click', () => picture(button.dataset.picture, charts));
   }

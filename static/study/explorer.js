@@ -28,7 +28,10 @@ export class Explorer {
 
   // Columns by their keys in the address, or those that vary, up to a number.
   columnsOf(name, most) {
-    const given = this.address.list(name).map((key) => this.designs.byKey.get(key)).filter(Boolean);
+    const given = this.address
+      .list(name)
+      .map((key) => this.designs.byKey.get(key))
+      .filter(Boolean);
     if (given.length > 1) {
       return given;
     }
@@ -54,16 +57,29 @@ export class Explorer {
     frame.replaceChildren(place);
     const columns = this.columnsOf('axes', AXES);
     this.parallel = new Parallel(place, this.designs, this.selection, {
-      columns, colour: this.metric, onHover: (row, event) => this.point(row, event),
+      columns,
+      colour: this.metric,
+      onHover: (row, event) => this.point(row, event),
       onChange: () => {
         this.address.set('axes', this.parallel.columns.map(({ key }) => key).join(','));
-        this.address.set('log', this.designs.columns.filter(({ isLogarithmic }) => isLogarithmic).map(({ key }) => key).join(','));
+        this.address.set(
+          'log',
+          this.designs.columns
+            .filter(({ isLogarithmic }) => isLogarithmic)
+            .map(({ key }) => key)
+            .join(','),
+        );
         frame.setAttribute('aria-label', axesText(this.designs, this.parallel.columns));
         this.scatter?.arrange();
       },
     });
     frame.setAttribute('aria-label', axesText(this.designs, columns));
-    new Picker(find('axes-picker'), this.designs, columns, (chosen) => chosen.length > 1 && this.parallel.setColumns(chosen));
+    new Picker(
+      find('axes-picker'),
+      this.designs,
+      columns,
+      (chosen) => chosen.length > 1 && this.parallel.setColumns(chosen),
+    );
   }
 
   setUpScatter() {
@@ -71,14 +87,28 @@ export class Explorer {
     find('scatter-plot').replaceChildren(place);
     const { parameters, byKey } = this.designs;
     const others = this.designs.metrics.filter((column) => column.varies && column !== this.metric);
-    const x = byKey.get(this.address.get('x')) ?? others.find(({ key }) => /^mass/.test(key)) ?? parameters.find(({ varies }) => varies) ?? parameters[0] ?? this.metric;
+    const x =
+      byKey.get(this.address.get('x')) ??
+      others.find(({ key }) => /^mass/.test(key)) ??
+      parameters.find(({ varies }) => varies) ??
+      parameters[0] ??
+      this.metric;
     const y = byKey.get(this.address.get('y')) ?? this.metric ?? parameters[0];
     this.scatter = new Scatter(place, this.designs, this.selection, {
-      x, y, colour: this.metric, onHover: (row, event) => this.point(row, event), onPick: (row) => this.pick(row, !this.picked.has(row)),
+      x,
+      y,
+      colour: this.metric,
+      onHover: (row, event) => this.point(row, event),
+      onPick: (row) => this.pick(row, !this.picked.has(row)),
     });
-    for (const [id, column, name] of [['scatter-x', x, 'x'], ['scatter-y', y, 'y']]) {
+    for (const [id, column, name] of [
+      ['scatter-x', x, 'x'],
+      ['scatter-y', y, 'y'],
+    ]) {
       const select = find(id);
-      select.replaceChildren(...this.designs.columns.map((one) => make('option', { value: one.key, selected: one === column }, one.label)));
+      select.replaceChildren(
+        ...this.designs.columns.map((one) => make('option', { value: one.key, selected: one === column }, one.label)),
+      );
       select.onchange = () => {
         this.address.set(name, select.value);
         this.scatter.front = [];
@@ -93,9 +123,16 @@ export class Explorer {
     find('only-differences').onchange = () => this.table.setColumns(this.shownColumns());
     this.chosenColumns = columns;
     this.table = new DesignTable({
-      scroll: find('table-scroll'), table: find('design-table'), designs: this.designs, selection: this.selection, columns,
-      sort: this.address.get('sort', 'member'), picked: this.picked,
-      onSort: (sort) => this.address.set('sort', sort, 'member'), onPick: (row, on) => this.pick(row, on), onHover: (row) => this.point(row),
+      scroll: find('table-scroll'),
+      table: find('design-table'),
+      designs: this.designs,
+      selection: this.selection,
+      columns,
+      sort: this.address.get('sort', 'member'),
+      picked: this.picked,
+      onSort: (sort) => this.address.set('sort', sort, 'member'),
+      onPick: (row, on) => this.pick(row, on),
+      onHover: (row) => this.point(row),
     });
     new Picker(find('columns-picker'), this.designs, columns, (chosen) => {
       this.chosenColumns = chosen;
@@ -149,8 +186,12 @@ export class Explorer {
     const tip = find('tip');
     tip.hidden = row < 0 || !event;
     if (!tip.hidden) {
-      tip.replaceChildren(make('strong', {}, this.designs.name(row)), ...this.parallel.columns.slice(0, 10).map((column) =>
-        make('span', {}, `${column.title} `, make('b', {}, column.textWithUnit(column.data[row])))));
+      tip.replaceChildren(
+        make('strong', {}, this.designs.name(row)),
+        ...this.parallel.columns
+          .slice(0, 10)
+          .map((column) => make('span', {}, `${column.title} `, make('b', {}, column.textWithUnit(column.data[row])))),
+      );
       const right = event.clientX + 250 > window.innerWidth;
       tip.style.left = `${event.clientX + (right ? -240 : 14)}px`;
       tip.style.top = `${Math.min(event.clientY + 14, window.innerHeight - 40 - 20 * this.parallel.columns.length)}px`;
@@ -186,8 +227,10 @@ export class Explorer {
 
   showPicked() {
     const rows = [...this.picked].sort((a, b) => a - b);
-    find('picked').textContent = rows.length === 0 ? 'Tick designs to compare them.'
-      : `${rows.length} picked${rows.length > MOST ? `; up to ${MOST} can be compared` : ''}`;
+    find('picked').textContent =
+      rows.length === 0
+        ? 'Tick designs to compare them.'
+        : `${rows.length} picked${rows.length > MOST ? `; up to ${MOST} can be compared` : ''}`;
     const link = find('compare-picked');
     const can = rows.length > 1 && rows.length <= MOST;
     link.hidden = !can;

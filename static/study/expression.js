@@ -33,8 +33,10 @@ function tokens(text) {
     } else if (bracket) {
       found.push({ kind: bracket, text: bracket });
     } else {
-      found.push({ kind: quoted === undefined && /^(and|or|not)$/i.test(word) ? word.toLowerCase() : 'word',
-        text: quoted ?? word });
+      found.push({
+        kind: quoted === undefined && /^(and|or|not)$/i.test(word) ? word.toLowerCase() : 'word',
+        text: quoted ?? word,
+      });
     }
   }
   return found;
@@ -46,15 +48,22 @@ function columnNamed(designs, name) {
     return exact;
   }
   const wanted = name.toLowerCase();
-  const tests = [({ title }) => title.toLowerCase() === wanted,
-    ({ key, title }) => key.toLowerCase().includes(wanted) || title.toLowerCase().includes(wanted)];
+  const tests = [
+    ({ title }) => title.toLowerCase() === wanted,
+    ({ key, title }) => key.toLowerCase().includes(wanted) || title.toLowerCase().includes(wanted),
+  ];
   for (const test of tests) {
     const fitting = designs.columns.filter(test);
     if (fitting.length === 1) {
       return fitting[0];
     }
     if (fitting.length > 1) {
-      throw new SyntaxError(`“${name}” may be ${fitting.slice(0, 3).map(({ key }) => key).join(', ')}`);
+      throw new SyntaxError(
+        `“${name}” may be ${fitting
+          .slice(0, 3)
+          .map(({ key }) => key)
+          .join(', ')}`,
+      );
     }
   }
   throw new SyntaxError(`there is no column “${name}”`);
@@ -112,11 +121,19 @@ class Parser {
   }
 
   filter() {
-    return this.chain('or', () => this.all(), (a, b) => (row) => a(row) || b(row));
+    return this.chain(
+      'or',
+      () => this.all(),
+      (a, b) => (row) => a(row) || b(row),
+    );
   }
 
   all() {
-    return this.chain('and', () => this.negation(), (a, b) => (row) => a(row) && b(row));
+    return this.chain(
+      'and',
+      () => this.negation(),
+      (a, b) => (row) => a(row) && b(row),
+    );
   }
 
   negation() {

@@ -45,8 +45,12 @@ export class Filters {
   follow() {
     const { designs, selection } = this;
     const ranges = selection.ranges();
-    setText(find('selected'), selection.count === designs.count ? `all ${designs.count} designs`
-      : `${selection.count} of ${designs.count} designs`);
+    setText(
+      find('selected'),
+      selection.count === designs.count
+        ? `all ${designs.count} designs`
+        : `${selection.count} of ${designs.count} designs`,
+    );
     find('clear').disabled = selection.limits.size === 0;
     this.showRanges(ranges);
     this.address.setRanges(ranges);
@@ -59,7 +63,8 @@ export class Filters {
     }
     ranges.forEach(([key, low, high], i) => {
       const column = this.designs.byKey.get(key);
-      const ends = column.words ? column.words.slice(Math.ceil(Math.max(low, 0)), Math.floor(high) + 1).join(', ')
+      const ends = column.words
+        ? column.words.slice(Math.ceil(Math.max(low, 0)), Math.floor(high) + 1).join(', ')
         : `${column.text(low)} – ${column.textWithUnit(high)}`;
       let chip = place.children[i];
       if (!chip) {
@@ -78,19 +83,30 @@ export class Filters {
 export class Picker {
   constructor(place, designs, chosen, onChange) {
     const ticked = new Set(chosen);
-    place.replaceChildren(...[['Parameters', designs.parameters], ['Metrics', designs.metrics]].map(([title, columns]) =>
-      make('fieldset', {}, make('legend', {}, title), ...columns.map((column) => {
-        const box = make('input', { type: 'checkbox' });
-        box.checked = ticked.has(column);
-        box.addEventListener('change', () => {
-          if (box.checked) {
-            ticked.add(column);
-          } else {
-            ticked.delete(column);
-          }
-          onChange(designs.columns.filter((one) => ticked.has(one)));
-        });
-        return make('label', { class: 'inline' }, box, column.label);
-      }))));
+    place.replaceChildren(
+      ...[
+        ['Parameters', designs.parameters],
+        ['Metrics', designs.metrics],
+      ].map(([title, columns]) =>
+        make(
+          'fieldset',
+          {},
+          make('legend', {}, title),
+          ...columns.map((column) => {
+            const box = make('input', { type: 'checkbox' });
+            box.checked = ticked.has(column);
+            box.addEventListener('change', () => {
+              if (box.checked) {
+                ticked.add(column);
+              } else {
+                ticked.delete(column);
+              }
+              onChange(designs.columns.filter((one) => ticked.has(one)));
+            });
+            return make('label', { class: 'inline' }, box, column.label);
+          }),
+        ),
+      ),
+    );
   }
 }

@@ -21,14 +21,41 @@ export class History {
       return best;
     });
     const points = (list) => list.map((value, i) => [i + 1, value === value ? value : null]);
-    return this.chart.show(() => ({
-      grid: { left: 76, right: 20, top: 34, bottom: 48 },
-      legend: { top: 0, left: 0, textStyle: { color: pageColour('ink') } },
-      xAxis: { type: 'value', min: 1, max: Math.max(values.length, 2), minInterval: 1, name: 'evaluation', nameLocation: 'middle', nameGap: 28 },
-      yAxis: { type: 'value', scale: true, name: column.label, nameLocation: 'middle', nameGap: 54 },
-      tooltip: { trigger: 'axis', valueFormatter: number },
-      series: [{ type: 'scatter', name: 'each evaluation', data: points(values), symbolSize: 6, itemStyle: { color: SERIES[4] } },
-        { type: 'line', name: 'best so far', data: points(bests), step: 'end', symbol: 'none', itemStyle: { color: lineColour() }, lineStyle: { color: lineColour(), width: 2.5 } }],
-    }), `${column.title} of ${values.length} evaluations; best ${number(best)}`);
+    return this.chart.show(
+      () => ({
+        grid: { left: 76, right: 20, top: 34, bottom: 48 },
+        legend: { top: 0, left: 0, textStyle: { color: pageColour('ink') } },
+        xAxis: {
+          type: 'value',
+          min: 1,
+          max: Math.max(values.length, 2),
+          minInterval: 1,
+          name: 'evaluation',
+          nameLocation: 'middle',
+          nameGap: 28,
+        },
+        yAxis: { type: 'value', scale: true, name: column.label, nameLocation: 'middle', nameGap: 54 },
+        tooltip: { trigger: 'axis', valueFormatter: number },
+        series: [
+          {
+            type: 'scatter',
+            name: 'each evaluation',
+            data: points(values),
+            symbolSize: 6,
+            itemStyle: { color: SERIES[4] },
+          },
+          {
+            type: 'line',
+            name: 'best so far',
+            data: points(bests),
+            step: 'end',
+            symbol: 'none',
+            itemStyle: { color: lineColour() },
+            lineStyle: { color: lineColour(), width: 2.5 },
+          },
+        ],
+      }),
+      `${column.title} of ${values.length} evaluations; best ${number(best)}`,
+    );
   }
 }

@@ -32,7 +32,8 @@ let wanted = {}; // objective and ranking, as the study's document has them
 
 // Metrics that say how well a solve went are of less interest than what it found.
 function metricsByInterest() {
-  return designs.metrics.filter(({ varies, key }) => varies && !key.endsWith('_error'))
+  return designs.metrics
+    .filter(({ varies, key }) => varies && !key.endsWith('_error'))
     .sort((a, b) => byImportance(a.key, b.key));
 }
 
@@ -50,9 +51,14 @@ function showTiles() {
       most = most < 0 || value > column.data[most] ? row : most;
     }
   }
-  for (const [name, row] of [['least', least], ['most', most]]) {
+  for (const [name, row] of [
+    ['least', least],
+    ['most', most],
+  ]) {
     setText(find(`${name}-value`), row < 0 ? '–' : column.textWithUnit(column.data[row]));
-    find(`${name}-design`).replaceChildren(row < 0 ? '\u00a0' : make('a', { href: `/jobs/${designs.jobs[row]}` }, designs.name(row)));
+    find(`${name}-design`).replaceChildren(
+      row < 0 ? '\u00a0' : make('a', { href: `/jobs/${designs.jobs[row]}` }, designs.name(row)),
+    );
   }
 }
 
@@ -70,8 +76,10 @@ function chooseMetric(key) {
 function setUpMetric() {
   const metrics = metricsByInterest();
   const given = address.get('metric');
-  metric = designs.byKey.has(given) ? given : metrics[0]?.key ?? designs.metrics[0]?.key ?? '';
-  find('metric').replaceChildren(...(metrics.length > 0 ? metrics : designs.metrics).map(({ key, label }) => make('option', { value: key }, label)));
+  metric = designs.byKey.has(given) ? given : (metrics[0]?.key ?? designs.metrics[0]?.key ?? '');
+  find('metric').replaceChildren(
+    ...(metrics.length > 0 ? metrics : designs.metrics).map(({ key, label }) => make('option', { value: key }, label)),
+  );
   find('metric').value = metric;
   find('metric').onchange = () => chooseMetric(find('metric').value);
 }
@@ -91,14 +99,18 @@ function usualObjectives() {
   if (metric === '') {
     return [];
   }
-  const cost = metrics.find(({ key }) => key !== metric && key.startsWith('mass')) ??
-    metrics.find(({ key }) => key !== metric && /^(max_|cavity_volume)/.test(key)) ?? metrics.find(({ key }) => key !== metric);
+  const cost =
+    metrics.find(({ key }) => key !== metric && key.startsWith('mass')) ??
+    metrics.find(({ key }) => key !== metric && /^(max_|cavity_volume)/.test(key)) ??
+    metrics.find(({ key }) => key !== metric);
   return [['max', metric], ...(cost ? [['min', cost.key]] : [])];
 }
 
 // Without designs there is nothing to explore.
 function showParts() {
-  for (const part of document.querySelectorAll('#study > .tiles, #study > .card:not(#history, #failures, #downloads), #study > .pair')) {
+  for (const part of document.querySelectorAll(
+    '#study > .tiles, #study > .card:not(#history, #failures, #downloads), #study > .pair',
+  )) {
     part.hidden = designs.count === 0;
   }
 }
@@ -121,14 +133,24 @@ function setUp() {
   const quality = setUpQuality(key);
   const slice = new Slice(designs, address, key, showChosen);
   const pareto = new Pareto(designs, address, usual, {
-    onFront: (rows, keys) => explorer.showFront(rows, keys), onPick: (row, on) => explorer.pick(row, on), onHover: (row) => explorer.point(row),
+    onFront: (rows, keys) => explorer.showFront(rows, keys),
+    onPick: (row, on) => explorer.pick(row, on),
+    onHover: (row) => explorer.point(row),
   });
-  const ranking = new Ranking(designs, address, usual.map(([way, name]) => [way, name, 1]), Boolean(wanted.ranking));
+  const ranking = new Ranking(
+    designs,
+    address,
+    usual.map(([way, name]) => [way, name, 1]),
+    Boolean(wanted.ranking),
+  );
   const search = new Search(designs, address, { metric, goal: usual[1]?.[1] ?? metric });
   panels.forEach((panel) => panel.retire());
   parts = [slice, pareto, ranking, search];
   panels = [importance, effects, quality, slice.panel, pareto.panel, ranking];
-  for (const [name, chart] of [['slice', slice.chart], ['history', history.chart]]) {
+  for (const [name, chart] of [
+    ['slice', slice.chart],
+    ['history', history.chart],
+  ]) {
     charts.set(name, chart);
   }
   showTiles();
@@ -139,19 +161,31 @@ function setUp() {
 function showChosen(values, expected, { title, unit }) {
   const button = make('button', { type: 'button', class: 'small', 'data-confirm': true }, 'Solve it');
   button.addEventListener('click', () => solve(values, button, find('search-problem')));
-  find('slice-chosen').replaceChildren(make('span', { class: 'state predicted' }, 'predicted'),
-    ` ${title} ${number(expected)} ${unit} at ${designText(designs, values)} `, button);
+  find('slice-chosen').replaceChildren(
+    make('span', { class: 'state predicted' }, 'predicted'),
+    ` ${title} ${number(expected)} ${unit} at ${designText(designs, values)} `,
+    button,
+  );
 }
 
 function curlLines() {
   const { origin } = window.location;
   const line = (url) => `curl -sS '${origin}${url}'`;
-  const objectives = address.get('pareto') || usualObjectives().map(([way, key]) => `${way}:${key}`).join(',');
-  return [['All designs, for spreadsheets', line(studyUrl('/export.csv'))],
+  const objectives =
+    address.get('pareto') ||
+    usualObjectives()
+      .map(([way, key]) => `${way}:${key}`)
+      .join(',');
+  return [
+    ['All designs, for spreadsheets', line(studyUrl('/export.csv'))],
     ['All designs, by columns', line(studyUrl('/designs', { format: 'columns' }))],
     ['Designs that no other one beats', line(studyUrl('/pareto', { objectives }))],
     [`What decides ${designs.byKey.get(metric)?.title}`, line(studyUrl('/importance', { metric }))],
-    ['The document, and the same study again', `curl -sS '${origin}/api/v1/jobs/${study.id}/document' | curl -sS -H 'Content-Type: application/json' --data-binary @- '${origin}/api/v1/jobs'`]];
+    [
+      'The document, and the same study again',
+      `curl -sS '${origin}/api/v1/jobs/${study.id}/document' | curl -sS -H 'Content-Type: application/json' --data-binary @- '${origin}/api/v1/jobs'`,
+    ],
+  ];
 }
 
 // Takes in designs that are new; columns that are new, or that begin to vary, make the page anew.
@@ -202,12 +236,19 @@ async function start() {
   const status = new Status(takeDesigns);
   status.start(study);
   setUp();
-  setUpDownloads(() => designs, () => explorer?.selection, charts, curlLines);
+  setUpDownloads(
+    () => designs,
+    () => explorer?.selection,
+    charts,
+    curlLines,
+  );
   onColours(() => explorer?.repaint());
-  requestAnimationFrame(() => setTimeout(() => {
-    performance.mark('study-usable');
-    readDocument().catch(() => {}); // without it the page is only less well informed
-  }));
+  requestAnimationFrame(() =>
+    setTimeout(() => {
+      performance.mark('study-usable');
+      readDocument().catch(() => {}); // without it the page is only less well informed
+    }),
+  );
 }
 
 start();

@@ -61,8 +61,9 @@ export class Parallel {
       fit(canvas, this.width, this.height, sharpness());
     }
     this.stops = this.columns.map((_, axis) => Math.round(this.x(axis) * scale));
-    this.gaps = this.stops.slice(1).map((stop, gap) =>
-      new Density(stop - this.stops[gap], this.front.height, this.designs.count <= MANY));
+    this.gaps = this.stops
+      .slice(1)
+      .map((stop, gap) => new Density(stop - this.stops[gap], this.front.height, this.designs.count <= MANY));
     this.hasBack = false;
     this.places = this.columns.map((column) => column.places());
     this.shades = rowShades(this.designs, this.colour);
@@ -79,7 +80,7 @@ export class Parallel {
 
   x(axis) {
     const gaps = Math.max(this.columns.length - 1, 1);
-    return SIDE + axis / gaps * (this.width - 2 * SIDE);
+    return SIDE + (axis / gaps) * (this.width - 2 * SIDE);
   }
 
   y(place) {
@@ -123,7 +124,8 @@ export class Parallel {
       this.isWhole = false;
     }
     if (this.isWhole) {
-      for (const row of changed) { // one that comes and goes before the picture is not drawn at all
+      for (const row of changed) {
+        // one that comes and goes before the picture is not drawn at all
         this.isDue[row] ^= 1;
         this.due.push(row);
       }
@@ -316,7 +318,10 @@ export class Parallel {
     if (row < 0) {
       return;
     }
-    for (const [width, colour] of [[5, 'card'], [2.5, 'ink']]) {
+    for (const [width, colour] of [
+      [5, 'card'],
+      [2.5, 'ink'],
+    ]) {
       context.lineWidth = width;
       context.strokeStyle = pageColour(colour);
       this.stroke(context, row, (place) => this.y(place));

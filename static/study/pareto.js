@@ -8,8 +8,10 @@ import { analysis } from './source.js';
 
 // "max:bending_angle_deg,min:mass_g" -> [["max", "bending_angle_deg"], ...], of metrics that there are.
 export function readObjectives(text, designs) {
-  return text.split(',').map((part) => part.split(':')).filter(([direction, key]) =>
-    ['max', 'min'].includes(direction) && designs.byKey.has(key));
+  return text
+    .split(',')
+    .map((part) => part.split(':'))
+    .filter(([direction, key]) => ['max', 'min'].includes(direction) && designs.byKey.has(key));
 }
 
 export class Pareto {
@@ -19,22 +21,38 @@ export class Pareto {
     const given = readObjectives(address.get('pareto'), designs);
     this.objectives = new Map((given.length > 0 ? given : usual).map(([direction, key]) => [key, direction]));
     this.showChoice();
-    this.panel = new Panel('pareto', () => this.ask(), (answer) => this.show(answer));
+    this.panel = new Panel(
+      'pareto',
+      () => this.ask(),
+      (answer) => this.show(answer),
+    );
   }
 
   showChoice() {
     const choice = (column) => {
       const id = `objective-${column.index}`;
-      const select = make('select', { id }, make('option', { value: '' }, 'ignore'), make('option', { value: 'max' }, 'most'),
-        make('option', { value: 'min' }, 'least'));
+      const select = make(
+        'select',
+        { id },
+        make('option', { value: '' }, 'ignore'),
+        make('option', { value: 'max' }, 'most'),
+        make('option', { value: 'min' }, 'least'),
+      );
       select.value = this.objectives.get(column.key) || '';
       select.addEventListener('change', () => this.choose(column.key, select.value));
       return make('div', { class: 'choice' }, make('label', { for: id }, column.title), select);
     };
-    find('objectives').replaceChildren(...offered(this.designs, this.objectives, (key) => {
-      this.choose(key, 'max');
-      this.showChoice();
-    }, choice));
+    find('objectives').replaceChildren(
+      ...offered(
+        this.designs,
+        this.objectives,
+        (key) => {
+          this.choose(key, 'max');
+          this.showChoice();
+        },
+        choice,
+      ),
+    );
   }
 
   choose(key, direction) {
@@ -61,14 +79,33 @@ export class Pareto {
     const [head] = answer.objectives;
     const sign = head.direction === 'max' ? -1 : 1;
     first.sort((a, b) => sign * (a.values[0] - b.values[0]));
-    const wanted = answer.objectives.map(({ direction, title }) => `${direction === 'max' ? 'most' : 'least'} ${title}`).join(', ');
+    const wanted = answer.objectives
+      .map(({ direction, title }) => `${direction === 'max' ? 'most' : 'least'} ${title}`)
+      .join(', ');
     find('pareto-text').textContent = `${first.length} of ${answer.compared} designs are beaten by none (${wanted}).`;
-    const heading = answer.objectives.map(({ title, unit }) => make('th', { scope: 'col', class: 'number' }, title, make('span', { class: 'unit' }, unit || '\u00a0')));
+    const heading = answer.objectives.map(({ title, unit }) =>
+      make('th', { scope: 'col', class: 'number' }, title, make('span', { class: 'unit' }, unit || '\u00a0')),
+    );
     const known = first.filter(({ job }) => this.rowOf.has(job)); // others came since
     const rows = known.slice(0, 100).map((design) => this.line(design));
-    find('pareto-table').replaceChildren(make('thead', {}, make('tr', {}, make('th', { scope: 'col' }, make('span', { class: 'quiet' }, 'Pick')), make('th', { scope: 'col' }, 'Design'), ...heading)),
-      make('tbody', {}, ...rows));
-    this.onFront(known.map(({ job }) => this.rowOf.get(job)), answer.objectives.map(({ key }) => key));
+    find('pareto-table').replaceChildren(
+      make(
+        'thead',
+        {},
+        make(
+          'tr',
+          {},
+          make('th', { scope: 'col' }, make('span', { class: 'quiet' }, 'Pick')),
+          make('th', { scope: 'col' }, 'Design'),
+          ...heading,
+        ),
+      ),
+      make('tbody', {}, ...rows),
+    );
+    this.onFront(
+      known.map(({ job }) => this.rowOf.get(job)),
+      answer.objectives.map(({ key }) => key),
+    );
   }
 
   line(design) {
@@ -76,8 +113,13 @@ export class Pareto {
     const name = this.designs.name(row);
     const box = make('input', { type: 'checkbox', 'aria-label': `Pick ${name}`, 'data-pick': row });
     box.addEventListener('change', () => this.onPick(row, box.checked));
-    const line = make('tr', {}, make('td', {}, box), make('th', { scope: 'row' }, make('a', { href: `/jobs/${design.job}` }, name)),
-      ...design.values.map((value) => make('td', { class: 'number' }, number(value))));
+    const line = make(
+      'tr',
+      {},
+      make('td', {}, box),
+      make('th', { scope: 'row' }, make('a', { href: `/jobs/${design.job}` }, name)),
+      ...design.values.map((value) => make('td', { class: 'number' }, number(value))),
+    );
     line.addEventListener('pointerenter', () => this.onHover(row));
     line.addEventListener('pointerleave', () => this.onHover(-1));
     return line;

@@ -14,8 +14,13 @@ export class Ranking {
   constructor(designs, address, usual, hasPreset) {
     Object.assign(this, { designs, address });
     this.hasPreset = hasPreset;
-    const given = address.list('rank').map((part) => part.split(':')).filter(([, key]) => designs.byKey.has(key));
-    this.criteria = new Map((given.length > 0 ? given : usual).map(([way, key, weight]) => [key, [way, Number(weight) || 1]]));
+    const given = address
+      .list('rank')
+      .map((part) => part.split(':'))
+      .filter(([, key]) => designs.byKey.has(key));
+    this.criteria = new Map(
+      (given.length > 0 ? given : usual).map(([way, key, weight]) => [key, [way, Number(weight) || 1]]),
+    );
     this.isPreset = hasPreset && given.length === 0;
     this.isChosen = given.length > 0;
     this.showPreset();
@@ -25,7 +30,11 @@ export class Ranking {
       this.renew();
     };
     this.showWeights();
-    this.panel = new Panel('ranking', () => this.ask(), (answer) => this.show(answer));
+    this.panel = new Panel(
+      'ranking',
+      () => this.ask(),
+      (answer) => this.show(answer),
+    );
   }
 
   showPreset() {
@@ -52,20 +61,40 @@ export class Ranking {
 
   showWeights() {
     find('ranking-weights').hidden = this.isPreset;
-    find('ranking-weights').replaceChildren(...offered(this.designs, this.criteria, (key) => {
-      this.criteria.set(key, ['max', 1]);
-      this.showWeights();
-      this.follow();
-    }, (column) => this.weight(column)));
+    find('ranking-weights').replaceChildren(
+      ...offered(
+        this.designs,
+        this.criteria,
+        (key) => {
+          this.criteria.set(key, ['max', 1]);
+          this.showWeights();
+          this.follow();
+        },
+        (column) => this.weight(column),
+      ),
+    );
   }
 
   weight(column) {
     const [way, weight] = this.criteria.get(column.key) ?? ['', 1];
     const id = `weight-${column.index}`;
-    const select = make('select', { 'aria-label': `Direction of ${column.title}` }, make('option', { value: '' }, 'ignore'),
-      make('option', { value: 'max' }, 'most'), make('option', { value: 'min' }, 'least'));
+    const select = make(
+      'select',
+      { 'aria-label': `Direction of ${column.title}` },
+      make('option', { value: '' }, 'ignore'),
+      make('option', { value: 'max' }, 'most'),
+      make('option', { value: 'min' }, 'least'),
+    );
     select.value = way;
-    const range = make('input', { id, type: 'range', min: 0.1, max: 5, step: 0.1, value: weight, disabled: way === '' });
+    const range = make('input', {
+      id,
+      type: 'range',
+      min: 0.1,
+      max: 5,
+      step: 0.1,
+      value: weight,
+      disabled: way === '',
+    });
     const follow = () => {
       range.disabled = select.value === '';
       if (select.value) {
@@ -96,30 +125,44 @@ export class Ranking {
     if (this.isPreset) {
       return analysis('ranking', { preset: 'taper', limit: SHOWN });
     }
-    return this.criteria.size === 0 ? Promise.reject(new Error('Choose what counts.'))
+    return this.criteria.size === 0
+      ? Promise.reject(new Error('Choose what counts.'))
       : analysis('ranking', { criteria: this.text(), limit: SHOWN });
   }
 
   // Bars of what each criterion adds, the best design first.
   show({ criteria, designs, compared }) {
     const rowOf = new Map(this.designs.jobs.map((job, row) => [job, row]));
-    find('ranking-legend').replaceChildren(...criteria.map(({ title, weight }, i) => {
-      const key = make('span', { class: 'key' });
-      key.style.background = SERIES[i % SERIES.length];
-      return make('li', {}, key, `${title} ${Math.round(100 * weight)} %`);
-    }));
+    find('ranking-legend').replaceChildren(
+      ...criteria.map(({ title, weight }, i) => {
+        const key = make('span', { class: 'key' });
+        key.style.background = SERIES[i % SERIES.length];
+        return make('li', {}, key, `${title} ${Math.round(100 * weight)} %`);
+      }),
+    );
     const most = Math.max(...designs.map(({ score }) => score), 1e-9);
-    find('ranking-list').replaceChildren(...designs.map((design) => {
-      const bar = make('span', { class: 'bar-of-parts', 'aria-hidden': 'true' }, ...design.parts.map((part, i) => {
-        const share = make('span');
-        share.style.width = `${100 * Math.max(this.isPreset ? design.score / design.parts.length : part * criteria[i].weight, 0) / most}%`;
-        share.style.background = SERIES[i % SERIES.length];
-        return share;
-      }));
-      const row = rowOf.get(design.job);
-      return make('li', { value: design.rank }, make('a', { href: `/jobs/${design.job}` }, row === undefined ? design.name : this.designs.name(row)),
-        bar, make('span', { class: 'number' }, design.score.toFixed(3)));
-    }));
+    find('ranking-list').replaceChildren(
+      ...designs.map((design) => {
+        const bar = make(
+          'span',
+          { class: 'bar-of-parts', 'aria-hidden': 'true' },
+          ...design.parts.map((part, i) => {
+            const share = make('span');
+            share.style.width = `${(100 * Math.max(this.isPreset ? design.score / design.parts.length : part * criteria[i].weight, 0)) / most}%`;
+            share.style.background = SERIES[i % SERIES.length];
+            return share;
+          }),
+        );
+        const row = rowOf.get(design.job);
+        return make(
+          'li',
+          { value: design.rank },
+          make('a', { href: `/jobs/${design.job}` }, row === undefined ? design.name : this.designs.name(row)),
+          bar,
+          make('span', { class: 'number' }, design.score.toFixed(3)),
+        );
+      }),
+    );
     find('ranking-text').textContent = `${compared} designs compared; 1 is the best in everything.`;
   }
 }

@@ -65,7 +65,11 @@ export class Scatter {
 
   // Where each design is in the pixels: their index, -1 without a value.
   findSpots() {
-    const { places: [px, py], scale, points: { width } } = this;
+    const {
+      places: [px, py],
+      scale,
+      points: { width },
+    } = this;
     this.spots = new Int32Array(this.designs.count).fill(-1);
     for (let row = 0; row < this.spots.length; row++) {
       if (px[row] === px[row] && py[row] === py[row]) {
@@ -94,7 +98,11 @@ export class Scatter {
     if (!this.pixels) {
       return;
     }
-    const { designs: { count }, selection, pixels } = this;
+    const {
+      designs: { count },
+      selection,
+      pixels,
+    } = this;
     if (selection.count < count) {
       this.base ??= this.drawBase();
       pixels.data.set(this.base);
@@ -139,7 +147,7 @@ export class Scatter {
       const spot = spots[row];
       if (spot >= 0) {
         const c = 3 * shaded[row];
-        const colour = 255 << 24 | colours[c + 2] << 16 | colours[c + 1] << 8 | colours[c];
+        const colour = (255 << 24) | (colours[c + 2] << 16) | (colours[c + 1] << 8) | colours[c];
         for (let k = 0; k < steps.length; k++) {
           out[spot + steps[k]] = colour;
         }
@@ -258,8 +266,8 @@ export class Scatter {
     const [x0, y0] = this.at(down);
     let hasMoved = false;
     this.place.setPointerCapture(down.pointerId);
-    const ends = (column, a, b) => [Math.min(a, b), Math.max(a, b)].map((place) =>
-      column.at(Math.min(Math.max(place, -1e-9), 1 + 1e-9)));
+    const ends = (column, a, b) =>
+      [Math.min(a, b), Math.max(a, b)].map((place) => column.at(Math.min(Math.max(place, -1e-9), 1 + 1e-9)));
     const move = (event) => {
       const [x1, y1] = this.at(event);
       hasMoved = hasMoved || Math.hypot(x1 - x0, y1 - y0) > 4;

@@ -22,16 +22,22 @@ export async function solve(values, button, place) {
 
 // The parameters of a design in one line.
 export function designText(designs, values) {
-  return Object.entries(values).map(([key, value]) => {
-    const column = designs.byKey.get(key);
-    return column ? `${column.title} ${typeof value === 'number' ? `${number(value)}\u00a0${column.unit}`.trim() : value}` : '';
-  }).filter(Boolean).join(', ');
+  return Object.entries(values)
+    .map(([key, value]) => {
+      const column = designs.byKey.get(key);
+      return column
+        ? `${column.title} ${typeof value === 'number' ? `${number(value)}\u00a0${column.unit}`.trim() : value}`
+        : '';
+    })
+    .filter(Boolean)
+    .join(', ');
 }
 
 export class Search {
   constructor(designs, address, usual) {
     Object.assign(this, { designs, address });
-    const options = () => designs.metrics.filter(({ varies }) => varies).map(({ key, label }) => make('option', { value: key }, label));
+    const options = () =>
+      designs.metrics.filter(({ varies }) => varies).map(({ key, label }) => make('option', { value: key }, label));
     find('search-metric').replaceChildren(...options());
     find('search-goal').replaceChildren(...options());
     find('search-metric').value = address.get('want', usual.metric);
@@ -70,21 +76,55 @@ export class Search {
 
   show(answer) {
     const { metrics } = answer;
-    const head = make('thead', {}, make('tr', {}, make('th', { scope: 'col' }, 'Design'), ...metrics.map(({ title, unit }) =>
-      make('th', { scope: 'col', class: 'number' }, title, make('span', { class: 'unit' }, unit || '\u00a0'))), make('th', { scope: 'col' }, 'How it is known')));
-    const rows = [...answer.stored.slice(0, 5).map((one) => this.line(one, metrics)), ...answer.predicted.slice(0, 5).map((one) => this.line(one, metrics))];
+    const head = make(
+      'thead',
+      {},
+      make(
+        'tr',
+        {},
+        make('th', { scope: 'col' }, 'Design'),
+        ...metrics.map(({ title, unit }) =>
+          make('th', { scope: 'col', class: 'number' }, title, make('span', { class: 'unit' }, unit || '\u00a0')),
+        ),
+        make('th', { scope: 'col' }, 'How it is known'),
+      ),
+    );
+    const rows = [
+      ...answer.stored.slice(0, 5).map((one) => this.line(one, metrics)),
+      ...answer.predicted.slice(0, 5).map((one) => this.line(one, metrics)),
+    ];
     find('search-table').replaceChildren(head, make('tbody', {}, ...rows));
-    find('search-text').textContent = rows.length === 0 ? 'No design does, and none is expected to.'
-      : `${answer.meeting} stored ${answer.meeting === 1 ? 'design does' : 'designs do'}; the best of them first, then what is expected of others.`;
+    find('search-text').textContent =
+      rows.length === 0
+        ? 'No design does, and none is expected to.'
+        : `${answer.meeting} stored ${answer.meeting === 1 ? 'design does' : 'designs do'}; the best of them first, then what is expected of others.`;
   }
 
   line(one, metrics) {
     const values = metrics.map(({ key }) => one.metrics.find((metric) => metric.key === key));
-    const cells = values.map((metric) => make('td', { class: 'number' }, number(metric?.value),
-      typeof metric?.deviation === 'number' ? make('span', { class: 'muted' }, ` ± ${tickText(Number((1.96 * metric.deviation).toPrecision(2)))}`) : null));
-    return make('tr', { class: one.predicted ? 'predicted' : null },
-      make('th', { scope: 'row' }, one.predicted ? designText(this.designs, one.values) : make('a', { href: `/jobs/${one.job}` }, one.name || `design ${one.member}`)),
-      ...cells, this.source(one));
+    const cells = values.map((metric) =>
+      make(
+        'td',
+        { class: 'number' },
+        number(metric?.value),
+        typeof metric?.deviation === 'number'
+          ? make('span', { class: 'muted' }, ` ± ${tickText(Number((1.96 * metric.deviation).toPrecision(2)))}`)
+          : null,
+      ),
+    );
+    return make(
+      'tr',
+      { class: one.predicted ? 'predicted' : null },
+      make(
+        'th',
+        { scope: 'row' },
+        one.predicted
+          ? designText(this.designs, one.values)
+          : make('a', { href: `/jobs/${one.job}` }, one.name || `design ${one.member}`),
+      ),
+      ...cells,
+      this.source(one),
+    );
   }
 
   source(one) {
@@ -92,7 +132,11 @@ export class Search {
       return make('td', {}, make('span', { class: 'state succeeded' }, 'solved'));
     }
     if (one.solved) {
-      return make('td', {}, make('a', { href: `/jobs/${one.solved.job}` }, `Job ${one.solved.job}: ${one.solved.state}`));
+      return make(
+        'td',
+        {},
+        make('a', { href: `/jobs/${one.solved.job}` }, `Job ${one.solved.job}: ${one.solved.state}`),
+      );
     }
     const button = make('button', { type: 'button', class: 'small', 'data-confirm': true }, 'Solve it');
     button.addEventListener('click', () => solve(one.values, button, find('search-problem')));

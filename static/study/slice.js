@@ -22,9 +22,18 @@ function mapOption(answer, shows) {
   const data = values.flatMap((row, j) => row.map((value, i) => [i, j, value]));
   const all = data.map(([, , value]) => value).filter((value) => value !== null);
   const axis = (one, gap) => ({
-    type: 'category', data: one.values, name: axisName(one), nameLocation: 'middle', nameGap: gap,
-    axisLabel: { formatter: (value) => (Number.isNaN(Number(value)) ? value : tickText(Number(Number(value).toPrecision(3)))), hideOverlap: true, interval: one.values.length > 12 ? 7 : 0 },
-    axisTick: { alignWithLabel: true, interval: one.values.length > 12 ? 7 : 0 }, splitLine: { show: false },
+    type: 'category',
+    data: one.values,
+    name: axisName(one),
+    nameLocation: 'middle',
+    nameGap: gap,
+    axisLabel: {
+      formatter: (value) => (Number.isNaN(Number(value)) ? value : tickText(Number(Number(value).toPrecision(3)))),
+      hideOverlap: true,
+      interval: one.values.length > 12 ? 7 : 0,
+    },
+    axisTick: { alignWithLabel: true, interval: one.values.length > 12 ? 7 : 0 },
+    splitLine: { show: false },
   });
   const words = [0, 0.25, 0.5, 0.75, 1].map(shadeText);
   return {
@@ -32,16 +41,36 @@ function mapOption(answer, shows) {
     xAxis: axis(x, 28),
     yAxis: axis(y, y.values.some((v) => typeof v === 'string') ? 104 : 46),
     visualMap: {
-      type: 'continuous', min: Math.min(...all), max: Math.max(...all), calculable: false, right: 0, top: 'middle',
-      itemWidth: 12, itemHeight: 150, precision: 3, inRange: { color: words }, textStyle: { color: pageColour('ink'), fontSize: 11 },
+      type: 'continuous',
+      min: Math.min(...all),
+      max: Math.max(...all),
+      calculable: false,
+      right: 0,
+      top: 'middle',
+      itemWidth: 12,
+      itemHeight: 150,
+      precision: 3,
+      inRange: { color: words },
+      textStyle: { color: pageColour('ink'), fontSize: 11 },
       text: [Math.max(...all), Math.min(...all)].map((value) => tickText(Number(value.toPrecision(3)))),
     },
     tooltip: {
-      formatter: ({ value: [i, j] }) => `${x.title} ${typeof x.values[i] === 'number' ? number(x.values[i]) : x.values[i]} ${x.unit}\n${y.title} ${
-        typeof y.values[j] === 'number' ? number(y.values[j]) : y.values[j]} ${y.unit}\n${metric.title} ${number(answer.mean[j][i])} ± ${
-        number(Number((1.96 * answer.deviation[j][i]).toPrecision(2)))} ${metric.unit}\nclick to choose it`,
+      formatter: ({ value: [i, j] }) =>
+        `${x.title} ${typeof x.values[i] === 'number' ? number(x.values[i]) : x.values[i]} ${x.unit}\n${y.title} ${
+          typeof y.values[j] === 'number' ? number(y.values[j]) : y.values[j]
+        } ${y.unit}\n${metric.title} ${number(answer.mean[j][i])} ± ${number(
+          Number((1.96 * answer.deviation[j][i]).toPrecision(2)),
+        )} ${metric.unit}\nclick to choose it`,
     },
-    series: [{ type: 'heatmap', data, progressive: 0, itemStyle: { borderWidth: 0 }, emphasis: { itemStyle: { borderColor: pageColour('ink'), borderWidth: 1 } } }],
+    series: [
+      {
+        type: 'heatmap',
+        data,
+        progressive: 0,
+        itemStyle: { borderWidth: 0 },
+        emphasis: { itemStyle: { borderColor: pageColour('ink'), borderWidth: 1 } },
+      },
+    ],
   };
 }
 
@@ -51,19 +80,43 @@ function lineOption(answer) {
   const [deviation] = answer.deviation;
   const isWord = typeof x.values[0] === 'string';
   const points = (pick) => mean.map((value, i) => (isWord ? pick(value, i) : [x.values[i], pick(value, i)]));
-  const band = { type: 'line', stack: 'band', stackStrategy: 'all', symbol: 'none', lineStyle: { opacity: 0 }, silent: true };
+  const band = {
+    type: 'line',
+    stack: 'band',
+    stackStrategy: 'all',
+    symbol: 'none',
+    lineStyle: { opacity: 0 },
+    silent: true,
+  };
   return {
     grid: { left: 72, right: 20, top: 14, bottom: 48 },
-    xAxis: { type: isWord ? 'category' : x.logarithmic ? 'log' : 'value', data: isWord ? x.values : undefined, 
-      min: isWord ? undefined : x.values[0], max: isWord ? undefined : x.values.at(-1), name: axisName(x),
-      nameLocation: 'middle', nameGap: 28 },
+    xAxis: {
+      type: isWord ? 'category' : x.logarithmic ? 'log' : 'value',
+      data: isWord ? x.values : undefined,
+      min: isWord ? undefined : x.values[0],
+      max: isWord ? undefined : x.values.at(-1),
+      name: axisName(x),
+      nameLocation: 'middle',
+      nameGap: 28,
+    },
     yAxis: { type: 'value', scale: true, name: axisName(metric), nameLocation: 'middle', nameGap: 44 },
     tooltip: { trigger: 'axis', valueFormatter: number },
     series: [
       { ...band, data: points((value, i) => value - 1.96 * deviation[i]), tooltip: { show: false } },
-      { ...band, data: points((value, i) => 3.92 * deviation[i]), areaStyle: { color: '#56b4e9', opacity: 0.3 }, tooltip: { show: false } },
-      { type: 'line', name: metric.title, data: points((value) => value), symbol: isWord ? 'circle' : 'none', itemStyle: { color: lineColour() },
-        lineStyle: { color: lineColour(), width: 2.5 } },
+      {
+        ...band,
+        data: points((value, i) => 3.92 * deviation[i]),
+        areaStyle: { color: '#56b4e9', opacity: 0.3 },
+        tooltip: { show: false },
+      },
+      {
+        type: 'line',
+        name: metric.title,
+        data: points((value) => value),
+        symbol: isWord ? 'circle' : 'none',
+        itemStyle: { color: lineColour() },
+        lineStyle: { color: lineColour(), width: 2.5 },
+      },
     ],
   };
 }
@@ -80,7 +133,11 @@ export class Slice {
       }
     }
     this.setUpSelects();
-    this.panel = new Panel('slice', () => this.ask(), (answer) => this.draw(answer));
+    this.panel = new Panel(
+      'slice',
+      () => this.ask(),
+      (answer) => this.draw(answer),
+    );
   }
 
   setUpSelects() {
@@ -139,7 +196,13 @@ export class Slice {
         this.panel.renew();
       }, PAUSE_MS);
     });
-    return make('div', { class: 'slider' }, make('label', { for: id }, column.title), control, column.words ? null : output);
+    return make(
+      'div',
+      { class: 'slider' },
+      make('label', { for: id }, column.title),
+      control,
+      column.words ? null : output,
+    );
   }
 
   ask() {

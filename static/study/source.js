@@ -8,7 +8,10 @@ const base = `/api/v1/studies/${encodeURIComponent(id)}`;
 // The address of a part of the study, with its query.
 export function studyUrl(part = '', query = {}) {
   const text = new URLSearchParams(Object.entries(query).filter(([, value]) => value !== '' && value !== undefined))
-    .toString().replaceAll('%2F', '/').replaceAll('%2C', ',').replaceAll('%3A', ':');
+    .toString()
+    .replaceAll('%2F', '/')
+    .replaceAll('%2C', ',')
+    .replaceAll('%3A', ':');
   return `${base}${part}${text ? `?${text}` : ''}`;
 }
 

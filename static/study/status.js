@@ -7,8 +7,12 @@ import { poll } from '../poll.js';
 import { showProblem } from '../problem.js';
 import { extend, forget, id, summary } from './source.js';
 
-const GROUPS = [['succeeded', ['succeeded']], ['failed', ['failed', 'timed_out', 'cancelled']],
-  ['running', ['starting', 'running', 'cancelling', 'retry_wait']], ['queued', ['queued', 'held']]];
+const GROUPS = [
+  ['succeeded', ['succeeded']],
+  ['failed', ['failed', 'timed_out', 'cancelled']],
+  ['running', ['starting', 'running', 'cancelling', 'retry_wait']],
+  ['queued', ['queued', 'held']],
+];
 const EVERY_MS = 2000; // between two looks at the designs of a running study
 
 function counted(counts, states) {
@@ -29,7 +33,11 @@ export class Status {
 
   start(first) {
     this.show(first);
-    this.refresh = poll(() => this.update(), `/api/v1/events?job=${encodeURIComponent(id)}`, () => this.refresh());
+    this.refresh = poll(
+      () => this.update(),
+      `/api/v1/events?job=${encodeURIComponent(id)}`,
+      () => this.refresh(),
+    );
     if (isActive(first.state)) {
       this.refresh();
     }
@@ -59,7 +67,8 @@ export class Status {
     try {
       const answer = await action();
       showProblem(find('action-problem'), null);
-      if (answer.id && String(answer.id) !== id) { // a study never changes: another one goes on with it
+      if (answer.id && String(answer.id) !== id) {
+        // a study never changes: another one goes on with it
         window.location.assign(`/studies/${answer.id}`);
         return;
       }
@@ -83,27 +92,38 @@ export class Status {
   showCounts({ counts = {}, members = 0 }) {
     const total = Math.max(members, counted(counts, Object.keys(counts)), 1);
     const parts = GROUPS.map(([name, states]) => [name, counted(counts, states)]);
-    setText(find('counts'), parts.filter(([, count]) => count > 0).map(([name, count]) => `${count} ${name}`).join(' · ')
-      || 'no designs yet');
+    setText(
+      find('counts'),
+      parts
+        .filter(([, count]) => count > 0)
+        .map(([name, count]) => `${count} ${name}`)
+        .join(' · ') || 'no designs yet',
+    );
     for (const [name, count] of parts) {
-      find(`share-${name}`).style.width = `${100 * count / total}%`;
+      find(`share-${name}`).style.width = `${(100 * count) / total}%`;
     }
     const done = counted(counts, GROUPS[0][1]) + counted(counts, GROUPS[1][1]);
-    find('shares').setAttribute('aria-valuenow', Math.round(100 * done / total));
+    find('shares').setAttribute('aria-valuenow', Math.round((100 * done) / total));
   }
 
   showActions({ state, counts = {}, extendable, members }) {
     const failed = counted(counts, ['failed', 'timed_out', 'cancelled']);
-    const wanted = [['cancel', 'Cancel', isActive(state) || state === 'held'], ['hold', 'Hold', isActive(state)],
-      ['release', 'Release', state === 'held'], ['retry', 'Retry failed designs', !isActive(state) && failed > 0]].filter(([, , applies]) => applies);
+    const wanted = [
+      ['cancel', 'Cancel', isActive(state) || state === 'held'],
+      ['hold', 'Hold', isActive(state)],
+      ['release', 'Release', state === 'held'],
+      ['retry', 'Retry failed designs', !isActive(state) && failed > 0],
+    ].filter(([, , applies]) => applies);
     const names = wanted.map(([name]) => name).join();
     if (names !== this.shownActions) {
       this.shownActions = names;
-      find('actions').replaceChildren(...wanted.map(([name, label]) => {
-        const button = make('button', { type: 'button', 'data-action': name }, label);
-        button.addEventListener('click', () => this.act(() => post(jobUrl(id, `/${name}`))));
-        return button;
-      }));
+      find('actions').replaceChildren(
+        ...wanted.map(([name, label]) => {
+          const button = make('button', { type: 'button', 'data-action': name }, label);
+          button.addEventListener('click', () => this.act(() => post(jobUrl(id, `/${name}`))));
+          return button;
+        }),
+      );
     }
     const canGrow = extendable && !isActive(state);
     find('extend-form').hidden = !canGrow;
@@ -116,9 +136,17 @@ export class Status {
 
   showFailures(failures) {
     find('failures').hidden = failures.length === 0;
-    find('failure-list').replaceChildren(...failures.map(({ reason_code: code, count, jobs }) =>
-      make('li', {}, make('strong', {}, `${count} × ${stateWord(code)}`), ': ',
-        ...jobs.flatMap((job, i) => [i > 0 ? ', ' : '', make('a', { href: `/jobs/${job}` }, `job ${job}`)]),
-        count > jobs.length ? ' and more' : '')));
+    find('failure-list').replaceChildren(
+      ...failures.map(({ reason_code: code, count, jobs }) =>
+        make(
+          'li',
+          {},
+          make('strong', {}, `${count} × ${stateWord(code)}`),
+          ': ',
+          ...jobs.flatMap((job, i) => [i > 0 ? ', ' : '', make('a', { href: `/jobs/${job}` }, `job ${job}`)]),
+          count > jobs.length ? ' and more' : '',
+        ),
+      ),
+    );
   }
 }

@@ -44,16 +44,37 @@ export class DesignTable {
     const heading = (key, label, unit, className) => {
       const [, sign, sorted] = /^(-?)(.*)$/.exec(this.sort);
       const isSorted = sorted === key;
-      const button = make('button', { type: 'button', class: 'sort', title: key },
-        label, isSorted ? make('span', { 'aria-hidden': 'true' }, sign ? ' ▾' : ' ▴') : null);
+      const button = make(
+        'button',
+        { type: 'button', class: 'sort', title: key },
+        label,
+        isSorted ? make('span', { 'aria-hidden': 'true' }, sign ? ' ▾' : ' ▴') : null,
+      );
       button.addEventListener('click', () => this.setSort(isSorted && !sign ? `-${key}` : key));
-      return make('th', { scope: 'col', class: className, 'aria-sort': isSorted ? (sign ? 'descending' : 'ascending') : null },
-        button, make('span', { class: 'unit' }, unit || '\u00a0'));
+      return make(
+        'th',
+        { scope: 'col', class: className, 'aria-sort': isSorted ? (sign ? 'descending' : 'ascending') : null },
+        button,
+        make('span', { class: 'unit' }, unit || '\u00a0'),
+      );
     };
-    this.head.replaceChildren(make('tr', {}, make('th', { scope: 'col' }, make('span', { class: 'quiet' }, 'Pick')),
-      heading('member', 'Design', '', ''), heading('state', 'State', '', ''),
-      ...this.columns.map((column) => heading(column.key, column.title, column.unit,
-        `${column.words ? '' : 'number'}${column.isParameter ? ' is-parameter' : ''}`))));
+    this.head.replaceChildren(
+      make(
+        'tr',
+        {},
+        make('th', { scope: 'col' }, make('span', { class: 'quiet' }, 'Pick')),
+        heading('member', 'Design', '', ''),
+        heading('state', 'State', '', ''),
+        ...this.columns.map((column) =>
+          heading(
+            column.key,
+            column.title,
+            column.unit,
+            `${column.words ? '' : 'number'}${column.isParameter ? ' is-parameter' : ''}`,
+          ),
+        ),
+      ),
+    );
   }
 
   setSort(sort) {
@@ -73,14 +94,15 @@ export class DesignTable {
     const [, sign, key] = /^(-?)(.*)$/.exec(this.sort);
     const data = key === 'state' ? designs.states : designs.byKey.get(key)?.data;
     const turn = sign ? -1 : 1;
-    if (data) { // those without a value are last in either order
+    if (data) {
+      // those without a value are last in either order
       rows.sort((a, b) => {
         const x = data[a];
         const y = data[b];
         if (x === y) {
           return a - b;
         }
-        return x === x && y === y ? turn * (x - y) : (x === x ? -1 : y === y ? 1 : a - b);
+        return x === x && y === y ? turn * (x - y) : x === x ? -1 : y === y ? 1 : a - b;
       });
     } else if (sign) {
       rows.reverse();
@@ -118,7 +140,14 @@ export class DesignTable {
     const link = make('a');
     const state = make('span');
     const cells = this.columns.map((column) => make('td', { class: column.words ? '' : 'number' }));
-    const element = make('tr', {}, make('td', {}, box), make('th', { scope: 'row' }, link), make('td', {}, state), ...cells);
+    const element = make(
+      'tr',
+      {},
+      make('td', {}, box),
+      make('th', { scope: 'row' }, link),
+      make('td', {}, state),
+      ...cells,
+    );
     return { element, box, link, state, cells, row: -1 };
   }
 
