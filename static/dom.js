@@ -25,9 +25,3 @@ export function setText(element, text) {
     element.textContent = text;
   }
 }
-
-export function describe(list, entries) {
-  list.replaceChildren(...entries.flatMap(([term, value]) => [
-    make('dt', {}, term), make('dd', {}, value),
-  ]));
-}

@@ -59,11 +59,6 @@ export function quantity(key) {
     : { label: sentence(key), unit: '' };
 }
 
-// Whether a key is that of the error estimate of another one: "<metric>_error".
-export function isErrorOf(key, keys) {
-  return key.endsWith('_error') && keys.includes(key.slice(0, -'_error'.length));
-}
-
 function rank(key) {
   const place = FIRST.indexOf(key);
   return place < 0 ? FIRST.length : place;
@@ -101,41 +96,6 @@ export function number(value) {
     ? scientific(size)
     : grouped(size.toFixed(Math.max(0, 3 - Math.floor(Math.log10(size)))));
   return (value < 0 ? '−' : '') + text;
-}
-
-export function withUnit(key, value) {
-  const { unit } = quantity(key);
-  const gap = unit === '' || unit === '°' ? '' : '\u00a0';
-  return `${number(value)}${gap}${unit}`;
-}
-
-// A time of the API (ISO text, or milliseconds since 1970) as Date, or null.
-export function instant(value) {
-  if (value === null || value === undefined || value === '') {
-    return null;
-  }
-  const date = new Date(value);
-  return Number.isNaN(date.getTime()) ? null : date;
-}
-
-export function moment(value) {
-  const date = instant(value);
-  return date ? date.toLocaleString(undefined, { dateStyle: 'medium', timeStyle: 'medium' }) : '–';
-}
-
-export function ago(value) {
-  const date = instant(value);
-  if (!date) {
-    return '–';
-  }
-  const seconds = Math.max(0, (Date.now() - date.getTime()) / 1000);
-  if (seconds < 60) {
-    return 'just now';
-  }
-  if (seconds < 3600) {
-    return `${Math.floor(seconds / 60)} min ago`;
-  }
-  return seconds < 86400 ? `${Math.floor(seconds / 3600)} h ago` : date.toLocaleDateString();
 }
 
 export function stateWord(state) {
