@@ -23,6 +23,7 @@ small='def small: .load.pressure.steps = 1 | .error_estimate = false | .contact 
     (if .set then .set |= with_entries(select(.key | test("^/(actuator|material)"))) else . end) |
     (if .designs then .designs |= .[0:1]
      elif .sampling == "optimise" then .budget = 1
+     elif .size then .size = 1
      else .parameters |= map(.values |= .[0:1]) end) |
     (if .sampling == "one-at-a-time" then .parameters |= .[0:1] else . end) |
     (if .designs then .designs[0].set |= with_entries(select(.key | test("^/(actuator|material)")))
