@@ -67,7 +67,7 @@ enum status study_draw_ranking(struct canvas *canvas, const struct study_plot_in
     score[i] = above + below;
     panel.frame.x_max = fmax(panel.frame.x_max, above);
     panel.frame.x_min = fmin(panel.frame.x_min, below);
-    snprintf(names[i], sizeof names[i], "%zu. %.180s", i + 1, ranking->name[i]);
+    snprintf(names[i], sizeof names[i], "%zu. %.170s", i + 1, ranking->name[i]);
     bars.name[i] = names[i];
   }
   study_bars_begin(&bars, &panel, canvas);
