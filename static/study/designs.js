@@ -44,6 +44,8 @@ export class Column {
     this.varies = this.words
       ? new Set(this.data.filter((v) => v === v)).size > 1
       : this.high - this.low > 1e-6 * Math.max(Math.abs(this.low), Math.abs(this.high));
+    // a parameter that counts something
+    this.isWhole = this.isParameter && !this.words && !this.unit && this.data.every((v) => v !== v || Number.isInteger(v));
     this.canBeLogarithmic = !this.words && this.low > 0;
     this.isLogarithmic = this.canBeLogarithmic && description.logarithmic === true;
   }
@@ -84,6 +86,11 @@ export class Column {
   // The value at a place.
   at(place) {
     return this.isLogarithmic ? this.low * (this.high / this.low) ** place : this.low + place * (this.high - this.low);
+  }
+
+  // A value that a design may have, with as many digits as people give.
+  tidy(value) {
+    return this.isWhole ? Math.round(value) : Number(value.toPrecision(4));
   }
 
   // The places of all values as numbers of 32 bits.

@@ -171,7 +171,7 @@ export class Slice {
     if (column.words) {
       return column.words[0];
     }
-    return Number(column.at(0.5).toPrecision(3));
+    return column.tidy(Number(column.at(0.5).toPrecision(3)));
   }
 
   showSliders() {
@@ -181,13 +181,14 @@ export class Slice {
 
   slider(column) {
     const value = this.at.get(column.key) ?? this.middle(column);
+    this.at.set(column.key, value);
     const id = `at-${column.index}`;
     const output = make('output', { for: id }, typeof value === 'number' ? column.textWithUnit(value) : value);
     const control = column.words
       ? make('select', { id }, ...column.words.map((word) => make('option', { selected: word === value }, word)))
       : make('input', { id, type: 'range', min: 0, max: 1, step: 0.01, value: column.place(value) });
     control.addEventListener('input', () => {
-      const chosen = column.words ? control.value : Number(column.at(Number(control.value)).toPrecision(4));
+      const chosen = column.words ? control.value : column.tidy(column.at(Number(control.value)));
       this.at.set(column.key, chosen);
       output.textContent = column.words ? '' : column.textWithUnit(chosen);
       clearTimeout(this.timer);
@@ -232,8 +233,8 @@ export class Slice {
     const { x, y, at, mean } = this.answer;
     if (seriesType === 'heatmap') {
       const [i, j] = value;
-      const tidy = (one) => (typeof one === 'number' ? Number(one.toPrecision(4)) : one);
-      this.onChoose({ ...at, [x.key]: tidy(x.values[i]), [y.key]: tidy(y.values[j]) }, mean[j][i], this.answer.metric);
+      const tidy = (key, one) => (typeof one === 'number' ? this.designs.byKey.get(key).tidy(one) : one);
+      this.onChoose({ ...at, [x.key]: tidy(x.key, x.values[i]), [y.key]: tidy(y.key, y.values[j]) }, mean[j][i], this.answer.metric);
     }
   }
 }
