@@ -203,11 +203,14 @@ static void name_cells(const struct study_axis *axis, const double *centre, size
 static void draw_scale(struct canvas *canvas, const struct box *area, const struct fit *fit) {
   double u = canvas->unit, left = area->x + area->width + 18 * u;
   double room = canvas->width - 12 * u - left, y = area->y + area->height + 24 * u;
+  if (room < 30 * u || !(fit->scale > 0) || !isfinite(fit->scale)) {
+    return;
+  }
   struct ticks ticks = ticks_make(0, room / fit->scale, 2);
   double length = ticks.step * fit->scale;
   char number[TICKS_TEXT], text[TICKS_TEXT + 8];
   struct text_style style = chart_style_tick();
-  if (room < 30 * u || length > room) {
+  if (length > room) {
     return;
   }
   ticks_plain(ticks.step, 3, number);
