@@ -32,7 +32,7 @@ check "the line of a syntax error" 3 "$(field .line)"
 check_match "an unknown key names the nearest" top_wall \
   "$(curl -s --data-binary "$(job '.actuator.top_wal = "2 mm"')" "$URL/api/v1/jobs" | jq -r .detail)"
 fetch POST /api/v1/jobs:validate --data-binary "$(job '.accuracy = "fats"')"
-check "the parts of the sentence" '"fats"/"fast", "standard" or "fine"/fast/fast' \
+check "the parts of the sentence" '"fats"/"draft", "fast", "standard" or "fine"/fast/fast' \
   "$(field '[.found, .allowed, .nearest, .example] | join("/")')"
 check_match "its place" "^/accuracy .line [0-9]+, column [0-9]+.: " "$(field .detail)"
 job '.accuracy = "fats"' > "$WORK/wrong.json"
