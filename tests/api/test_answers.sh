@@ -56,6 +56,12 @@ for attempt in 0 2 x; do
 done
 fetch GET "/api/v1/plots/overlay.png?jobs=$id,$again&width=400&height=320"
 check "a small overlay" "200 image/png" "$CODE $(header Content-Type)"
+cp "$WORK/body" "$WORK/light"
+fetch GET "/api/v1/plots/overlay.png?jobs=$id,$again&width=400&height=320&theme=dark"
+check "a dark one is another picture" "200 image/png differs" \
+  "$CODE $(header Content-Type) $(cmp -s "$WORK/light" "$WORK/body" && echo same || echo differs)"
+fetch GET "/api/v1/plots/overlay.png?jobs=$id&theme=blue"
+check "a theme that is none" "400 invalid_query" "$CODE $(field .code)"
 
 # No room is left on the disk, by what has to stay free of it.
 stop_daemon TERM

@@ -9,7 +9,7 @@ wait_state "$id" succeeded > /dev/null
 for path in "/api/v1/jobs/$id/document" "/api/v1/jobs/$id/result" "/api/v1/jobs/$id/samples.csv" \
   "/api/v1/jobs/$id/artifacts/surface.json" "/api/v1/jobs/$id/plots/angle.png" \
   "/api/v1/plots/overlay.png?jobs=$id" /api/v1/schemas/job /api/v1/schemas/result /openapi.json \
-  /openapi.yaml / /docs /sign-in /static/style.css; do
+  /openapi.yaml / "/compare?jobs=$id" "/submit?from=$id" /docs /sign-in /static/style.css; do
   fetch GET "$path"
   check_match "GET $path has a tag" '^"[^"]+"$' "$(header ETag)"
   case $path in /docs | /sign-in | /static/*) control=no-cache ;; *) control="private, no-cache" ;; esac

@@ -130,7 +130,7 @@ check "without the secret" 0 "$(grep -cE "secret-word|pneulab_[0-9a-f]{8}" "$WOR
 # A browser: the form, the cookie, and pages of other origins.
 fetch GET /sign-in
 check_match "the form" 'name="token"' "$BODY"
-for path in / /jobs/1 /compare?jobs=1,2 /submit?from=1; do
+for path in / /jobs/1 /studies/1 /compare?jobs=1,2 /submit?from=1; do
   fetch GET "$path"
   check "$path has data: it leads to the form" "303 /sign-in?next=$path" "$CODE $(header Location)"
   fetch GET "$path" -H 'Sec-Fetch-Site: cross-site' -H 'Sec-Fetch-Mode: navigate'

@@ -75,12 +75,38 @@ fetch GET "/api/v1/studies/$id/designs?format=table"
 check "an unknown format" "400 invalid_query" "$CODE $(field .code)"
 fetch GET "/api/v1/studies/$single"
 check "another job is no study" 404 "$CODE"
+fetch GET "/api/v1/studies/$id?format=columns"
+check "the study has no format" "400 invalid_query" "$CODE $(field .code)"
+check_match "why" format "$(field .detail)"
 check "its view in the database" "60.0|0.06" \
   "$(sql "select mass_g, heavy_g from study_$id where state = 'succeeded' and mass_g = 60")"
+
+# Its page, as those read it who have no scripts.
+masses() { # of the rows of the page, in their order
+  grep -o 'data-member="[0-9]*"' <<< "$BODY" | tr -dc '0-9\n' | while read -r job; do
+    sql "select round(number) from study_value join job using (study_id, member) where job.id = $job and position = 0"
+  done | cut -d. -f1 | paste -sd,
+}
+fetch GET "/studies/$id?sort=-/model/mass&page=1"
+check "the heaviest first" "200 text/html 70,70,60,60,50,50" \
+  "$CODE $(header Content-Type | cut -d';' -f1) $(masses)"
+fetch GET "/studies/$id?sort=-/model/mass&page=1" -H "If-None-Match: $(header ETag)"
+check "a page that is known is not sent again" "304 0" "$CODE ${#BODY}"
+fetch GET "/studies/$id?page=0"
+check "pages count from one" "400 text/html" "$CODE $(header Content-Type | cut -d';' -f1)"
+fetch GET "/studies/$single"
+check "another job has no such page" "404 text/html" "$CODE $(header Content-Type | cut -d';' -f1)"
 
 # Longer ones.
 fetch POST "/api/v1/studies/$id/extend" --data-binary '{"size": 20}'
 check "a grid has no more members" 409 "$CODE"
+for none in "$single" 4711 x; do
+  fetch POST "/api/v1/studies/$none/extend" --data-binary '{"size": 20}'
+  check "there is no study $none to extend" "404 not_found" "$CODE $(field .code)"
+done
+head -c 2000000 /dev/zero | tr '\0' ' ' > "$WORK/large"
+fetch POST "/api/v1/studies/$id/extend" --data-binary "@$WORK/large"
+check "a size does not take a megabyte" "413 too_large" "$CODE $(field .code)"
 short=$(submit "$(sobol)")
 wait_state "$short" succeeded > "$WORK/state"
 fetch POST "/api/v1/studies/$short/extend" --data-binary '{"size": 8}'
@@ -95,6 +121,12 @@ check "keeps the first members and solves the others" "0,1,2,3,4,5,6,7" \
   "$(sql "select group_concat(member) from (select member from job where study_id = $long and reused_from is not null order by member)")"
 check "with the same values" 8 \
   "$(sql "select count(*) from study_$short as a join study_$long as b using (member, mass_g, heavy_g)")"
+
+fetch POST "/api/v1/studies/$short/extend" -H 'Prefer: wait=60' --data-binary '{"size": 16}'
+check "its end can be waited for" "200 succeeded $short wait=60" \
+  "$CODE $(field '"\(.state) \(.extends)"') $(header Preference-Applied)"
+check "it is a new one" "/api/v1/jobs/$(field .id)" "$(header Location)"
+check "with all its members" 16 "$(sql "select count(*) from study_$(field .id)")"
 
 # Trying again solves what has failed.
 fetch POST "/api/v1/jobs/$id/retry"

@@ -62,6 +62,20 @@ fetch GET "$at/curve.png?metric=mass_g" -H "If-None-Match: $etag"
 check "another one is" 200 "$CODE"
 fetch GET "$at/contour.png?x=/actuator/side_wall&y=/actuator/top_wall&at./material=soft&metric=mass_g"
 check "a slice elsewhere" 200 "$CODE"
+for plot in 'curve.png?metric=bending_angle_deg' 'parallel.png?metric=bending_angle_deg' scatter.png?; do
+  fetch GET "$at/$plot&colour=mass_g"
+  cp "$WORK/body" "$WORK/mass"
+  fetch GET "$at/$plot&colour=/actuator/top_wall" -H "If-None-Match: $(header ETag)"
+  check "$plot in other colours" '200 differs' \
+    "$CODE $(cmp -s "$WORK/mass" "$WORK/body" && echo same || echo differs)"
+done
+for plot in parallel scatter; do
+  fetch GET "$at/$plot.png?columns=/actuator/side_wall,mass_g"
+  cp "$WORK/body" "$WORK/two"
+  fetch GET "$at/$plot.png?columns=/actuator/side_wall,mass_g,bending_angle_deg" -H "If-None-Match: $(header ETag)"
+  check "$plot of other columns" '200 differs' \
+    "$CODE $(cmp -s "$WORK/two" "$WORK/body" && echo same || echo differs)"
+done
 fetch GET /api/v1/studies/310/plots/ranking.png
 check "the ranking of the document" 200 "$CODE"
 fetch GET /api/v1/studies/300/plots/parallel.png
@@ -75,6 +89,8 @@ refused() { # TITLE URL CODE WORDS
 refused "no such plot" "$at/pie.png" 404 'heat-map'
 refused "no such metric" "$at/curve.png?metric=speed" 404 'mass_g'
 refused "no such parameter" "$at/heat-map.png?x=/actuator/size" 404 '/actuator/side_wall'
+refused "no such colour" "$at/scatter.png?colour=speed" 404 'mass_g'
+refused "no such column" "$at/parallel.png?columns=mass_g,speed" 404 'mass_g'
 refused "no objectives" "$at/pareto.png" 400 'max:'
 refused "words have no slice" "$at/contour.png?x=/material" 404 'effects'
 refused "one parameter is no slice" "$at/contour.png?x=/actuator/side_wall&y=/actuator/side_wall" 404 'two different'

@@ -111,6 +111,19 @@ for query in 'jobs=' 'jobs=1,' 'jobs=1,1' 'jobs=x' '' 'jobs=1&jobs=2' 'jobs=1,-2
 done
 fetch GET '/api/v1/compare?jobs=1,4711'
 check "compare with a job that does not exist" 404 "$CODE"
+fetch GET "/compare?job.1=on&job.$other=on"
+check "jobs marked in the list on a page" "200 1,$other" \
+  "$CODE $(grep -oE 'overlay.png\?jobs=[0-9,]*' <<< "$BODY" | head -1 | cut -d= -f2)"
+for path in '/compare?jobs=1,x' '/submit?from=0'; do
+  fetch GET "$path"
+  check "the page $path says why not" "400 text/html" "$CODE $(header Content-Type | cut -d';' -f1)"
+  check_match "$path: what is allowed" 'expected' "$BODY"
+done
+for path in '/compare?jobs=1,4711' '/submit?from=4711'; do
+  fetch GET "$path"
+  check "no page $path" "404 text/html" "$CODE $(header Content-Type | cut -d';' -f1)"
+  check_match "$path: which job" 4711 "$BODY"
+done
 
 # The API description and the routes agree: each path offers exactly the methods it is said to.
 fetch GET /openapi.yaml

@@ -18,8 +18,8 @@ const unseen = new Map([
   ["InternalError", "only a fault of the program gives it"],
 ]);
 
-// Paths that are pages for people; they are not part of the description.
-const page = /^\/($|(jobs|studies)\/[^/]+$|static\/|docs(\/|$)|[a-z]+\.html$)/;
+// Pages for people that are not part of the description.
+const page = /^\/($|jobs\/[^/]+$|static\/|docs(\/|$)|[a-z]+\.html$)/;
 
 const [description, ...records] = process.argv.slice(2);
 const contract = new Contract(description);
@@ -61,6 +61,11 @@ function* methodProblems(exchange, path) {
   }
 }
 
+// Pages refuse with a page; answerProblems knows whether they may.
+function isProblem({ headers }) {
+  return /^application\/problem\+json/.test(headers["content-type"] ?? "");
+}
+
 function* operationProblems(exchange, operation, values) {
   const { status } = exchange.answer;
   if (!operation.operation.responses[status]) {
@@ -73,9 +78,9 @@ function* operationProblems(exchange, operation, values) {
   seen.add(pointer);
   yield* contract.answerProblems(pointer, exchange.method, exchange.answer);
   if (status < 400) {
-    query.forEach((_, name) => seen.add(`${operation.name} ?${name.replace(/^(label|at)\..*/, "$1.NAME")}`));
+    query.forEach((_, name) => seen.add(`${operation.name} ?${name.replace(/^(label|at|job)\..*/, "$1.NAME")}`));
     yield* contract.requestProblems(operation, values, query, exchange);
-  } else if (exchange.method !== "HEAD" && exchange.answer.whole) {
+  } else if (exchange.method !== "HEAD" && exchange.answer.whole && isProblem(exchange.answer)) {
     const problem = JSON.parse(exchange.answer.body.toString("utf8"));
     if (problem.status !== status || problem.type !== `urn:pneulab:${problem.code}`) {
       yield "status or type of the problem do not agree with the answer";
