@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "server/base/csv.h"
 #include "server/http/cache.h"
 #include "server/http/handlers.h"
 #include "solver/job/json.h"
@@ -54,26 +55,6 @@ void result_metrics(struct request *request, struct reply *reply) {
   }
   reply_json(reply, 200, json_pack("{s:O}", "metrics", record.metrics));
   job_record_clear(&record);
-}
-
-/* Writes a text as one CSV field (RFC 4180). One that a spreadsheet would take for a formula gets
- * an apostrophe. */
-static void csv_text(FILE *out, const char *text) {
-  if (strchr("=+-@\t\r", text[0]) && text[0]) {
-    fputc('\'', out);
-  }
-  if (!strpbrk(text, ",\"\r\n")) {
-    fputs(text, out);
-    return;
-  }
-  fputc('"', out);
-  for (; *text; text++) {
-    if (*text == '"') {
-      fputc('"', out);
-    }
-    fputc(*text, out);
-  }
-  fputc('"', out);
 }
 
 static void csv_row(FILE *out, const json_t *columns, const json_t *sample) {

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "server/base/csv.h"
 #include "server/store/connection.h"
 #include "server/store/sql.h"
 
@@ -19,21 +20,9 @@ static void put_separator(FILE *out, bool *first) {
   *first = false;
 }
 
-/* In quotes where it has to be (RFC 4180, rules 5 to 7). */
 static void put_text(FILE *out, bool *first, const char *text) {
   put_separator(out, first);
-  if (!strpbrk(text, "\",\r\n") && text[0] != ' ') {
-    fputs(text, out);
-    return;
-  }
-  fputc('"', out);
-  for (; *text; text++) {
-    if (*text == '"') {
-      fputc('"', out);
-    }
-    fputc(*text, out);
-  }
-  fputc('"', out);
+  csv_text(out, text);
 }
 
 static void put_number(FILE *out, bool *first, double value) {

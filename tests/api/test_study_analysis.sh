@@ -17,11 +17,14 @@ sqlite3 "$DATA/pneulab.db" <<END
 INSERT INTO job (id, state, kind, name, document, spec_hash, created_ms, finished_ms)
   VALUES (100, 'succeeded', 'study', 'walls', '$study', 'study', 1769860800000, 1769860900000),
          (300, 'succeeded', 'study', 'no members', '$study', 'other', 1769860800000, 1769860900000);
-INSERT INTO study VALUES (100, 'sobol', 60, 0, 1), (300, 'sobol', 0, 0, 1), (310, 'list', 2, 0, 1);
+INSERT INTO study VALUES (100, 'sobol', 60, 0, 1), (300, 'sobol', 0, 0, 1), (310, 'list', 2, 0, 1),
+  (320, 'list', 1, 0, 1);
 INSERT INTO job (id, state, kind, name, document, spec_hash, attempt, created_ms, study_id, member) VALUES
   (310, 'succeeded', 'study', 'ranked', '{}', 'ranked', 1, 1769860800000, NULL, NULL),
   (311, 'succeeded', 'response', 'thick', '{}', 'thick', 0, 1769860800000, 310, 0),
-  (312, 'succeeded', 'response', 'thin', '{}', 'thin', 0, 1769860800000, 310, 1);
+  (312, 'succeeded', 'response', 'thin', '{}', 'thin', 0, 1769860800000, 310, 1),
+  (320, 'succeeded', 'study', 'hostile', '{}', 'hostile', 1, 1769860800000, NULL, NULL),
+  (321, 'succeeded', 'response', '=SUM(A1)', '{}', 'formula', 0, 1769860800000, 320, 0);
 INSERT INTO attempt (job_id, number, created_ms) VALUES (310, 1, 1769860800000);
 INSERT INTO result VALUES (310, 1, '{ "ranking": { "mean_weight": 0.7, "designs": [
   { "rank": 1, "member": 1, "name": "thin", "mean_weighted": 0.8, "normalised_variance": 0.25, "final": 0.785 },
@@ -152,6 +155,8 @@ check "another program reads the same" "$(sql "SELECT round(sum(value), 6) FROM 
   "$(sqlite3 "$WORK/read.db" 'SELECT round(sum(mass_g), 6) FROM t')"
 fetch GET "$at/export.csv?format=table"
 check "the same on request" "$(tr -d '\r' < "$WORK/table.csv" | md5sum)" "$(tr -d '\r' < "$WORK/body" | md5sum)"
+check "a formula is none" "0,321,succeeded,,'=SUM(A1)" "$(curl -s "$URL/api/v1/studies/320/export.csv" | tail -1 | tr -d '\r')"
+check "nor for Optuna" 1 "$(curl -s "$URL/api/v1/studies/320/export.csv?format=optuna" | grep -cF ",'=SUM(A1),")"
 curl -s "$URL$at/export.csv?format=optuna" > "$WORK/trials.csv"
 check "columns of Optuna" 'number,value,datetime_start,datetime_complete,duration,params_/actuator/side_wall,params_/actuator/chambers/0/count,params_/material,user_attrs_mass_g,user_attrs_job,user_attrs_name,user_attrs_reason,state' \
   "$(head -1 "$WORK/trials.csv" | tr -d '\r')"
