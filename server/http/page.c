@@ -31,7 +31,7 @@ static const struct static_file *template_find(const char *page) {
   return NULL;
 }
 
-/* ---- the head of every page -------------------------------------------------------------- */
+/* ---- the top of every page --------------------------------------------------------------- */
 
 static void link_write(struct html *html, const struct request *request, const char *href,
                        const char *text) {
@@ -74,9 +74,14 @@ static void top_write(struct html *html, const struct request *request) {
 
 /* ---- filling a page ---------------------------------------------------------------------- */
 
+static void template_fill(struct html *html, const struct static_file *file,
+                          const struct page *page);
+
 static void slot_write(struct html *html, const struct page *page, const char *name,
                        size_t length) {
-  if (length == 3 && memcmp(name, "top", 3) == 0) {
+  if (length == 4 && memcmp(name, "head", 4) == 0) {
+    template_fill(html, template_find("head"), page);
+  } else if (length == 3 && memcmp(name, "top", 3) == 0) {
     top_write(html, page->request);
   } else if (length == 5 && memcmp(name, "title", 5) == 0) {
     html_text(html, page->title);

@@ -13,8 +13,9 @@ struct page_slot {
 };
 
 /* Replies with the page of that name ("job" for static/pages/job.html), whose places are filled by
- * the slots, called with the context. Every page also has "top": head of the page with the links to
- * all pages and who is signed in, and "title" (escaped). A place without a slot stays empty. */
+ * the slots, called with the context. Every page also has "head": what the heads of all pages begin
+ * with (static/pages/head.html), "top": the links to all pages and who is signed in, and "title"
+ * (escaped). A place without a slot stays empty. */
 void page_reply(struct request *request, struct reply *reply, const char *page, const char *title,
                 const struct page_slot *slots, size_t count, void *context);
 
