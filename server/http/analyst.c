@@ -37,10 +37,6 @@ static struct task *next_task(const struct analyst *analyst) {
   return task;
 }
 
-static void refuse(struct reply *reply) {
-  reply_problem(reply, 503, "shutting_down", "The server is shutting down; try again later.");
-}
-
 static void *analyst_main(void *context) {
   struct analyst *analyst = context;
   pthread_mutex_lock(&analyst->mutex);
@@ -57,7 +53,7 @@ static void *analyst_main(void *context) {
     int64_t number = task->number;
     pthread_mutex_unlock(&analyst->mutex);
     if (stopping) {
-      refuse(&task->reply);
+      reply_shutting_down(&task->reply);
     } else {
       task->handle(task->request, &task->reply);
     }
@@ -160,7 +156,7 @@ static void fetch(struct request *request, struct reply *reply) {
     *reply = task->reply;
     free(task);
   } else {
-    refuse(reply);
+    reply_shutting_down(reply);
   }
 }
 
@@ -188,6 +184,6 @@ void analyst_defer(struct request *request, struct reply *reply, handler *handle
   pthread_mutex_unlock(&analyst->mutex);
   if (stopping) {
     free(task);
-    refuse(reply);
+    reply_shutting_down(reply);
   }
 }

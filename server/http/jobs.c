@@ -50,18 +50,14 @@ void submission_take(struct request *request, struct reply *reply, const char *t
   const char *key;
   int64_t id;
   bool replayed;
-  if (atomic_load(&service->draining)) {
-    reply_problem(reply, 503, "shutting_down", "The server is shutting down; try again later.");
+  if (!submission_open(request, reply)) {
     return;
   }
   if (!key_read(request, reply, &key) || !text_read(request, reply, text, size, &document)) {
     return;
   }
   document.submission.idempotency_key = key;
-  enum status status = disk_check(service->disk, &error);
-  if (status == STATUS_OK) {
-    status = store_submit(service->store, &document.submission, &id, &replayed, &error);
-  }
+  enum status status = document_store(request, &document, &id, &replayed, &error);
   bool answered =
       status == STATUS_OK && document.submission.reuse && !replayed && job_answered(service, id);
   document_release(&document);

@@ -209,6 +209,10 @@ static unsigned error_http_status(enum status status) {
   }
 }
 
+void reply_shutting_down(struct reply *reply) {
+  reply_problem(reply, 503, "shutting_down", "The server is shutting down; try again later.");
+}
+
 void reply_error(struct reply *reply, const struct error *error) {
   unsigned status = error_http_status(error->status);
   char detail[ERROR_TEXT_MAX];

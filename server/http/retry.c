@@ -124,11 +124,7 @@ static enum status job_resubmit(const struct request *request, int64_t id, const
     document.submission.retry_of = id;
     document.submission.retry_reason = reason;
     document.submission.reuse = false;
-    status = disk_check(request->service->disk, error);
-    if (status == STATUS_OK) {
-      status =
-          store_submit(request->service->store, &document.submission, new_id, &replayed, error);
-    }
+    status = document_store(request, &document, new_id, &replayed, error);
     document_release(&document);
   }
   free(text);
@@ -143,8 +139,7 @@ void job_retry(struct request *request, struct reply *reply) {
   if (!request_id(request, reply, &id)) {
     return;
   }
-  if (atomic_load(&request->service->draining)) {
-    reply_problem(reply, 503, "shutting_down", "The server is shutting down; try again later.");
+  if (!submission_open(request, reply)) {
     return;
   }
   enum status status = reason_read(request, &body, &reason, &error);

@@ -79,9 +79,9 @@ struct request {
   struct url url;
   const char *known_query;   /* names of the query parameters of the route, NULL: whatever */
   const char *parameters[2]; /* of the route, in order */
-  int64_t job_id;            /* of the job that the request waits for; negative: of a copy or analysis */
-  bool job_is_new;           /* the request made that job: the reply says where it is */
-  char *body;                /* NUL-terminated; NULL when empty */
+  int64_t job_id;  /* of the job that the request waits for; negative: of a copy or analysis */
+  bool job_is_new; /* the request made that job: the reply says where it is */
+  char *body;      /* NUL-terminated; NULL when empty */
   size_t body_size;
 };
 
@@ -158,7 +158,10 @@ void reply_stream(struct reply *reply, const char *content_type, const struct re
 void reply_problem(struct reply *reply, unsigned status, const char *code, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
-/* The same from a failure: the HTTP status follows from error->status. */
+/* The 503 of a server that takes nothing any more. */
+void reply_shutting_down(struct reply *reply);
+
+/* A problem from a failure: the HTTP status follows from error->status. */
 void reply_error(struct reply *reply, const struct error *error);
 
 /* ---- request.c --------------------------------------------------------------------------- */

@@ -270,11 +270,7 @@ static enum status extend(const struct request *request, int64_t id, int64_t *ne
   }
   if (status == STATUS_OK) {
     document.submission.extends = id;
-    status = disk_check(request->service->disk, error);
-    if (status == STATUS_OK) {
-      status =
-          store_submit(request->service->store, &document.submission, new_id, &replayed, error);
-    }
+    status = document_store(request, &document, new_id, &replayed, error);
     document_release(&document);
   }
   free(text);
@@ -287,8 +283,7 @@ void study_extend(struct request *request, struct reply *reply) {
   if (!request_id(request, reply, &id)) {
     return;
   }
-  if (atomic_load(&request->service->draining)) {
-    reply_problem(reply, 503, "shutting_down", "The server is shutting down; try again later.");
+  if (!submission_open(request, reply)) {
     return;
   }
   if (extend(request, id, &new_id, &error) != STATUS_OK) {

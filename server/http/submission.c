@@ -51,3 +51,19 @@ void document_release(struct job_document *document) {
   json_decref(document->root);
   document->root = NULL;
 }
+
+enum status document_store(const struct request *request, const struct job_document *document,
+                           int64_t *id, bool *replayed, struct error *error) {
+  enum status status = disk_check(request->service->disk, error);
+  return status == STATUS_OK
+             ? store_submit(request->service->store, &document->submission, id, replayed, error)
+             : status;
+}
+
+bool submission_open(const struct request *request, struct reply *reply) {
+  bool open = !atomic_load(&request->service->draining);
+  if (!open) {
+    reply_shutting_down(reply);
+  }
+  return open;
+}

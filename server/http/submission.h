@@ -21,6 +21,14 @@ enum status document_read(const struct request *request, const char *text, size_
 
 void document_release(struct job_document *document);
 
+/* Stores the submission of a document that was read, unless the disk is in trouble; otherwise as
+ * store_submit. */
+enum status document_store(const struct request *request, const struct job_document *document,
+                           int64_t *id, bool *replayed, struct error *error);
+
+/* Whether jobs are taken; otherwise replies that the server is shutting down. */
+bool submission_open(const struct request *request, struct reply *reply);
+
 /* Stores the job document in `text` for the request and replies as to a submission, also when it is
  * refused. */
 void submission_take(struct request *request, struct reply *reply, const char *text, size_t size);
