@@ -210,6 +210,9 @@ static enum status run_other(const struct job_spec *spec, const struct run_optio
     struct result_hlpv_options hlpv = {.events = options->events, .cancelled = options->cancelled};
     return result_hlpv(spec, &hlpv, document, ending, error);
   }
+  if (spec->kind == JOB_GRASP) {
+    return error_set(error, STATUS_INVALID, "/kind", "grasps are not solved by this version");
+  }
   if (spec->kind == JOB_SNAP) {
     struct result_snap_options snap = {options->events, options->cancelled};
     enum status status = result_snap(spec, &snap, document, ending, error);

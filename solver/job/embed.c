@@ -7,6 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "solver/base/base64.h"
 #include "solver/base/text.h"
 #include "solver/job/json.h"
 
@@ -14,19 +15,34 @@
 
 enum { WAY_MAX = 2 };
 
+/* What a file holds: a table of data, a document, or triangles, as text or binary. */
+enum content { CONTENT_TABLE, CONTENT_DOCUMENT, CONTENT_SURFACE };
+
 /* A place where a job may name a file. */
 struct slot {
   /* Way from the document to what holds the key, NULL where it ends: members, of which lists are
    * entered by themselves, and ANY for each member of an object. */
   const char *way[WAY_MAX + 1];
   const char *key;
-  bool table; /* a table of data, otherwise a document */
+  enum content content;
 };
 
-static const struct slot slots[] = {
-    {{NULL}, "data", true},     {{"measured"}, "data", true},           {{"input"}, "data", true},
-    {{"tables"}, "data", true}, {{"actuators", "input"}, "data", true}, {{NULL}, "base", false},
-    {{NULL}, "snap", false},    {{"laws", ANY}, "snap", false}};
+static const struct slot slots[] = {{{NULL}, "data", CONTENT_TABLE},
+                                    {{"measured"}, "data", CONTENT_TABLE},
+                                    {{"input"}, "data", CONTENT_TABLE},
+                                    {{"tables"}, "data", CONTENT_TABLE},
+                                    {{"actuators", "input"}, "data", CONTENT_TABLE},
+                                    {{NULL}, "base", CONTENT_DOCUMENT},
+                                    {{NULL}, "snap", CONTENT_DOCUMENT},
+                                    {{"laws", ANY}, "snap", CONTENT_DOCUMENT},
+                                    {{"object", "shape"}, "stl", CONTENT_SURFACE}};
+
+static const struct {
+  const char *refusal, *example;
+} kinds[] = {
+    [CONTENT_TABLE] = {"is no table: give one of comma-separated values, as .csv", "curve.csv"},
+    [CONTENT_DOCUMENT] = {"is no job document: give one, as .json", "baseline.json"},
+    [CONTENT_SURFACE] = {"is no surface: give one of triangles, as .stl", "part.stl"}};
 
 enum { SLOTS = sizeof slots / sizeof *slots, EMBED_LEVELS = 2 };
 
@@ -75,9 +91,10 @@ static enum status refuse_open(struct embedding *embedding, const char *name) {
   return refuse_file(embedding, name, why);
 }
 
-/* Reads a whole file into *text, NUL-terminated, owned by the caller. */
+/* Reads a whole file, unless `binary` one of text, into *text, NUL-terminated, owned by the caller.
+ */
 static enum status read_file(struct embedding *embedding, const char *path, const char *name,
-                             char **text, size_t *size) {
+                             bool binary, char **text, size_t *size) {
   struct stat properties;
   enum status status = STATUS_OK;
   /* Opening a pipe would wait for its writer. */
@@ -99,7 +116,7 @@ static enum status read_file(struct embedding *embedding, const char *path, cons
     status = refuse_file(embedding, name, "cannot be read to its end");
   } else if (*size > JSON_TEXT_MAX) {
     status = refuse_file(embedding, name, "is larger than 1 MiB, the most that a job may have");
-  } else if (memchr(buffer, '\0', *size)) {
+  } else if (!binary && memchr(buffer, '\0', *size)) {
     status = refuse_file(embedding, name, "is no text in UTF-8: it has NUL characters");
   }
   if (status == STATUS_OK) {
@@ -137,6 +154,15 @@ static json_t *text_value(const char *text, size_t size) {
   return value;
 }
 
+/* The content of a file in base64. NULL when memory runs out. */
+static json_t *binary_value(const char *content, size_t size) {
+  size_t length = 0;
+  char *text = base64_encode(content, size, &length);
+  json_t *value = text ? json_stringn(text, length) : NULL;
+  free(text);
+  return value;
+}
+
 /* The document of a base, its own files embedded. */
 static enum status read_document(struct embedding *embedding, const char *path, const char *text,
                                  size_t size, int level, json_t **document) {
@@ -169,17 +195,19 @@ static bool ends_with(const char *text, const char *end) {
 /* Puts the content of the file `name` in the place `key` of `parent`. */
 static enum status embed_one(struct embedding *embedding, json_t *parent, const struct slot *slot,
                              const char *name, const char *folder, int level) {
-  if (slot->table == ends_with(name, ".json")) {
-    return refuse_file(embedding, name,
-                       slot->table ? "is no table: give one of comma-separated values, as .csv"
-                                   : "is no job document: give one, as .json");
+  if ((slot->content != CONTENT_DOCUMENT) == ends_with(name, ".json")) {
+    return refuse_file(embedding, name, kinds[slot->content].refusal);
   }
   char *path = join_path(folder, name), *text = NULL;
   size_t size = 0;
   json_t *content = NULL;
-  enum status status = path ? read_file(embedding, path, name, &text, &size) : STATUS_NO_MEMORY;
-  if (status == STATUS_OK && slot->table) {
+  bool binary = slot->content == CONTENT_SURFACE;
+  enum status status =
+      path ? read_file(embedding, path, name, binary, &text, &size) : STATUS_NO_MEMORY;
+  if (status == STATUS_OK && slot->content == CONTENT_TABLE) {
     content = json_pack("{s:o}", "csv", text_value(text, size));
+  } else if (status == STATUS_OK && binary) {
+    content = json_pack("{s:o}", "base64", binary_value(text, size));
   } else if (status == STATUS_OK) {
     status = read_document(embedding, path, text, size, level, &content);
   }
@@ -213,10 +241,10 @@ static enum status look_at(struct embedding *embedding, json_t *parent, const st
     } else {
       status = error_set(embedding->error, STATUS_INVALID, embedding->pointer.text,
                          "this names no file\none string and nothing beside it\n\"%s\"",
-                         slot->table ? "curve.csv" : "baseline.json");
+                         kinds[slot->content].example);
     }
     json_pointer_pop(&embedding->pointer, inner);
-  } else if (!slot->table) {
+  } else if (slot->content == CONTENT_DOCUMENT) {
     status = walk(embedding, value, folder, level + 1);
   }
   json_pointer_pop(&embedding->pointer, mark);

@@ -1,13 +1,15 @@
 /* Files that a job names, { "file": "curve.csv" }, and their content in their place.
  *
  * A job may name a file where a table ("data", also that of "measured", "input", each of
- * "tables" and the "input" of each of "actuators"), the base of a study ("base") or the snap job
- * of a bistable one ("snap", also that of each of "laws") is due.
+ * "tables" and the "input" of each of "actuators"), the base of a study ("base"), the snap job
+ * of a bistable one ("snap", also that of each of "laws") or the surface of an object ("stl" of the
+ * "shape" of an "object") is due.
  * Whoever has the job's file at hand embeds the content before the job is read, so that everything
  * after it, the hash included, depends on the content alone:
  *   table   { "file": "curve.csv" }  becomes  { "csv": "text of the file" }
  *   base    { "file": "base.json" }  becomes  the document of that file, embedded likewise
  *   snap    { "file": "snap.json" }  becomes  the document of that file
+ *   stl     { "file": "part.stl" }   becomes  { "base64": "content of the file" }
  * A relative path starts at the folder of the file that names it. */
 #ifndef PNEULAB_JOB_EMBED_H
 #define PNEULAB_JOB_EMBED_H

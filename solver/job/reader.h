@@ -118,6 +118,10 @@ enum status reader_hlpv_control(const struct reader *reader, const json_t *value
 /* Fills name, timeout and snap of the job, as reader_hlpv does. Also STATUS_GEOMETRY. */
 enum status reader_snap(const struct reader *reader, const json_t *document, struct job_spec *job);
 
+/* Fills grasp of the job, as reader_hlpv does, after everything else has been read as in a response
+ * job. Also STATUS_GEOMETRY. */
+enum status reader_grasp(const struct reader *reader, const json_t *document, struct job_spec *job);
+
 /* As reader_hlpv, for name, timeout and identify; checks the data. */
 enum status reader_identify(const struct reader *reader, const json_t *document,
                             struct job_spec *job);

@@ -7,6 +7,7 @@
 #include "solver/base/text.h"
 #include "solver/job/bistable.h"
 #include "solver/job/embed.h"
+#include "solver/job/grasp.h"
 #include "solver/job/hlpv.h"
 #include "solver/job/identify.h"
 #include "solver/job/json.h"
@@ -267,6 +268,12 @@ static enum status read_snap(const struct reader *reader, const json_t *document
   return status == STATUS_OK && dynamics ? reader_snap_dynamics(reader, dynamics, spec) : status;
 }
 
+static enum status read_grasp(const struct reader *reader, const json_t *document,
+                              struct job_spec *spec) {
+  enum status status = read_response(reader, document, spec);
+  return status == STATUS_OK ? reader_grasp(reader, document, spec) : status;
+}
+
 static enum status read_kind(const struct job_reader *job_reader, const struct reader *reader,
                              json_t *document, struct job_spec *spec) {
   const char *kind = json_string_value(json_object_get(document, "kind"));
@@ -278,6 +285,7 @@ static enum status read_kind(const struct job_reader *job_reader, const struct r
          : strcmp(kind, "identify") == 0       ? reader_identify(reader, document, spec)
          : strcmp(kind, "snap") == 0           ? read_snap(reader, document, spec)
          : strcmp(kind, "bistable") == 0       ? reader_bistable(reader, document, spec)
+         : strcmp(kind, "grasp") == 0          ? read_grasp(reader, document, spec)
                                                : read_response(reader, document, spec);
 }
 
@@ -349,6 +357,7 @@ void job_spec_release(struct job_spec *spec) {
   free(spec->identify);
   free(spec->snap);
   bistable_spec_destroy(spec->bistable);
+  grasp_spec_destroy(spec->grasp);
   *spec = (struct job_spec){.kind = JOB_RESPONSE};
 }
 

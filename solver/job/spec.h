@@ -16,7 +16,8 @@ enum job_kind {
   JOB_HLPV,
   JOB_IDENTIFY,
   JOB_SNAP,
-  JOB_BISTABLE
+  JOB_BISTABLE,
+  JOB_GRASP
 };
 
 /* ---- material --------------------------------------------------------------------------- */
@@ -245,7 +246,11 @@ struct identify_spec;
 /* A bistable bellows: solver/job/snap.h. */
 struct snap_spec;
 
-/* Only the members of its kind are filled: of a verify job name, verify, timeout and hash; of a
+/* An object and the course of its grasp: solver/job/grasp.h. */
+struct grasp_spec;
+
+/* Only the members of its kind are filled: of a grasp job those of a response job that it has, and
+ * grasp; of a verify job name, verify, timeout and hash; of a
  * study name, timeout, hash and document; of a fit name, fit, timeout, hash and document, and so of
  * an identification with identify; of a material curve name, material, curve and hash; of an hlpv
  * job name, hlpv, timeout and hash; of a snap job name, snap, timeout and hash. */
@@ -270,6 +275,7 @@ struct job_spec {
   struct snap_spec *snap;         /* of a snap job, else NULL; likewise */
   struct bistable_spec *bistable; /* of a bistable job, else NULL; likewise. Also of a snap
                                    * job with dynamics */
+  struct grasp_spec *grasp; /* of a grasp job, else NULL; likewise */
   bool contact;
   struct plane_spec plane[PLANES_MAX];
   int plane_count;

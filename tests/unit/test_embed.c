@@ -5,6 +5,7 @@
 #include <unistd.h>
 #include <sys/stat.h>
 
+#include "solver/base/base64.h"
 #include "solver/job/embed.h"
 #include "tests/unit/suite.h"
 
@@ -110,6 +111,47 @@ START_TEST(tables_become_text) {
 }
 END_TEST
 
+START_TEST(a_surface_becomes_base64) {
+  json_t *document = embed("{\"object\":{\"shape\":{\"stl\":{\"file\":\"nul.csv\"}}}}", NULL);
+  const json_t *shape = json_object_get(json_object_get(document, "object"), "shape");
+  const char *text = string_at(shape, "stl", "base64", NULL);
+  ck_assert_str_eq(text, "eAB5");
+  unsigned char bytes[3];
+  size_t size = 0;
+  ck_assert(base64_decode(text, strlen(text), bytes, &size));
+  ck_assert_uint_eq(size, 3);
+  ck_assert_mem_eq(bytes, "x\0y", 3);
+  json_decref(document);
+}
+END_TEST
+
+/* RFC 4648, section 10, and what is none. */
+START_TEST(base64_goes_to_and_fro) {
+  static const char *const pairs[][2] = {{"", ""},
+                                         {"f", "Zg=="},
+                                         {"fo", "Zm8="},
+                                         {"foo", "Zm9v"},
+                                         {"foob", "Zm9vYg=="},
+                                         {"fooba", "Zm9vYmE="},
+                                         {"foobar", "Zm9vYmFy"}};
+  static const char *const wrong[] = {"Z", "Zg=", "Zg===", "Z===", "Zg==Zg==", "Zm9?", "=m9v"};
+  unsigned char bytes[16];
+  size_t length = 0, size = 0;
+  for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+    char *text = base64_encode(pairs[i][0], strlen(pairs[i][0]), &length);
+    ck_assert_str_eq(text, pairs[i][1]);
+    ck_assert(base64_decode(text, length, bytes, &size));
+    ck_assert_uint_eq(size, strlen(pairs[i][0]));
+    ck_assert_mem_eq(bytes, pairs[i][0], size);
+    free(text);
+  }
+  ck_assert(base64_decode("Zm\n9v \t", 7, bytes, &size));
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+    ck_assert_msg(!base64_decode(wrong[i], strlen(wrong[i]), bytes, &size), "%s", wrong[i]);
+  }
+}
+END_TEST
+
 START_TEST(a_base_becomes_its_document_with_its_own_files) {
   json_t *document = embed("{\"base\":{\"file\":\"sub/base.json\"}}", NULL);
   ck_assert_str_eq(string_at(document, "base", "kind", NULL), "response");
@@ -202,6 +244,8 @@ int main(void) {
   tcase_add_checked_fixture(tcase, set_up, tear_down);
   tcase_add_test(tcase, text_without_files_is_left_as_it_is);
   tcase_add_test(tcase, tables_become_text);
+  tcase_add_test(tcase, a_surface_becomes_base64);
+  tcase_add_test(tcase, base64_goes_to_and_fro);
   tcase_add_test(tcase, a_base_becomes_its_document_with_its_own_files);
   tcase_add_test(tcase, a_law_becomes_its_snap_job);
   tcase_add_test(tcase, a_base_that_names_itself_ends);

@@ -1,0 +1,323 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "solver/base/base64.h"
+#include "solver/job/grasp.h"
+#include "solver/job/reader.h"
+
+static bool has_word(const json_t *object, const char *key, const char *word) {
+  const char *given = json_string_value(json_object_get(object, key));
+  return given && strcmp(given, word) == 0;
+}
+
+static enum status no_memory(const struct reader *reader) {
+  return error_set(reader->error, STATUS_NO_MEMORY, NULL, "no memory for the grasp");
+}
+
+/* ---- vectors ------------------------------------------------------------------------------ */
+
+static void read_vector(const struct reader *reader, const json_t *value, double out[3]) {
+  for (size_t i = 0; i < 3; i++) {
+    out[i] = reader_quantity(reader, json_array_get(value, i), "mm");
+  }
+}
+
+/* A direction, made 1 long. */
+static enum status read_direction(const struct reader *reader, const json_t *value,
+                                  const char *pointer, const char *what, double out[3]) {
+  double square = 0;
+  for (size_t i = 0; i < 3; i++) {
+    out[i] = json_number_value(json_array_get(value, i));
+    square += out[i] * out[i];
+  }
+  if (square == 0) {
+    return error_set(reader->error, STATUS_INVALID, pointer,
+                     "%s has no length\nat least one number that is not 0\n[0, 0, 1]", what);
+  }
+  for (int i = 0; i < 3; i++) {
+    out[i] /= sqrt(square);
+  }
+  return STATUS_OK;
+}
+
+/* ---- shape -------------------------------------------------------------------------------- */
+
+static enum status read_rounding(const struct reader *reader, const json_t *value, const char *key,
+                                 double most, struct grasp_shape *shape) {
+  char pointer[40];
+  snprintf(pointer, sizeof pointer, "/object/shape/%s", key);
+  shape->rounding = reader_member(reader, value, key, "mm", 0.0);
+  if (shape->rounding <= most * (1 + 1e-12)) {
+    return STATUS_OK;
+  }
+  return error_set(reader->error, STATUS_GEOMETRY, pointer,
+                   "a radius of %.6g mm does not fit the body\nat most %.6g mm",
+                   1e3 * shape->rounding, 1e3 * most);
+}
+
+static enum status read_profile(const struct reader *reader, const json_t *value,
+                                struct grasp_shape *shape) {
+  size_t index;
+  const json_t *point;
+  double widest = 0;
+  json_array_foreach(json_object_get(value, "profile"), index, point) {
+    double *p = shape->profile[shape->profile_count++];
+    char pointer[60];
+    snprintf(pointer, sizeof pointer, "/object/shape/profile/%zu", index);
+    p[0] = reader_quantity(reader, json_array_get(point, 0), "mm");
+    p[1] = reader_quantity(reader, json_array_get(point, 1), "mm");
+    widest = fmax(widest, p[1]);
+    if (index > 0 && !(p[0] > shape->profile[index - 1][0])) {
+      return error_set(reader->error, STATUS_INVALID, pointer,
+                       "z = %.6g mm is not above the %.6g mm of the point before\nz must rise from "
+                       "point to point",
+                       1e3 * p[0], 1e3 * shape->profile[index - 1][0]);
+    }
+    if (p[1] < 0) {
+      return error_set(reader->error, STATUS_INVALID, pointer,
+                       "the radius %.6g mm is negative\n0 or more", 1e3 * p[1]);
+    }
+  }
+  if (widest == 0) {
+    return error_set(reader->error, STATUS_GEOMETRY, "/object/shape/profile",
+                     "every radius is 0\nat least one above it");
+  }
+  return read_rounding(reader, value, "rim",
+                       0.5 * (shape->profile[shape->profile_count - 1][0] - shape->profile[0][0]),
+                       shape);
+}
+
+static enum status read_stl(const struct reader *reader, const json_t *value,
+                            struct grasp_shape *shape) {
+  static const char place[] = "/object/shape/stl/base64";
+  const json_t *text = json_object_get(json_object_get(value, "stl"), "base64");
+  size_t length = json_string_length(text);
+  shape->stl = malloc(length / 4 * 3 + 1);
+  if (!shape->stl) {
+    return no_memory(reader);
+  }
+  if (!base64_decode(json_string_value(text), length, shape->stl, &shape->stl_size)) {
+    return error_set(reader->error, STATUS_INVALID, place,
+                     "the text is not base64\nthe content of an STL file in base64; "
+                     "\"pneulab-solve --embed JOB.json\" writes it for { \"file\": \"part.stl\" }");
+  }
+  shape->stl_unit = has_word(value, "unit", "m")    ? 1
+                    : has_word(value, "unit", "cm") ? 1e-2
+                    : has_word(value, "unit", "in") ? 25.4e-3
+                                                    : 1e-3;
+  return STATUS_OK;
+}
+
+static enum status read_box(const struct reader *reader, const json_t *value,
+                            struct grasp_shape *shape) {
+  double least = INFINITY;
+  read_vector(reader, json_object_get(value, "size"), shape->size);
+  for (int i = 0; i < 3; i++) {
+    least = fmin(least, shape->size[i]);
+  }
+  return read_rounding(reader, value, "edge", 0.5 * least, shape);
+}
+
+static enum status read_shape(const struct reader *reader, const json_t *value,
+                              struct grasp_shape *shape) {
+  static const char *const forms[] = {
+      [GRASP_SPHERE] = "sphere",  [GRASP_CYLINDER] = "cylinder",     [GRASP_FRUSTUM] = "frustum",
+      [GRASP_BOX] = "box",        [GRASP_REVOLUTION] = "revolution", [GRASP_PLANE] = "plane",
+      [GRASP_SURFACE] = "surface"};
+  for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
+    shape->form = has_word(value, "form", forms[i]) ? (enum grasp_form)i : shape->form;
+  }
+  shape->diameter = reader_member(reader, value, "diameter", "mm", 0.0);
+  shape->length = reader_member(reader, value, "length", "mm", 0.0);
+  shape->base_diameter = reader_member(reader, value, "base_diameter", "mm", 0.0);
+  shape->tip_diameter = reader_member(reader, value, "tip_diameter", "mm", 0.0);
+  switch (shape->form) {
+  case GRASP_CYLINDER:
+    return read_rounding(reader, value, "rim", 0.5 * fmin(shape->diameter, shape->length), shape);
+  case GRASP_FRUSTUM:
+    return read_rounding(reader, value, "rim",
+                         0.5 * fmin(shape->length, fmin(shape->base_diameter, shape->tip_diameter)),
+                         shape);
+  case GRASP_BOX:
+    return read_box(reader, value, shape);
+  case GRASP_REVOLUTION:
+    return read_profile(reader, value, shape);
+  case GRASP_SURFACE:
+    return read_stl(reader, value, shape);
+  case GRASP_SPHERE:
+  case GRASP_PLANE:
+    break;
+  }
+  return STATUS_OK;
+}
+
+/* ---- object ------------------------------------------------------------------------------- */
+
+/* rotation <- R(axis of length 1, angle) rotation (Rodrigues). */
+static void rotate(double rotation[3][3], const double axis[3], double angle) {
+  double c = cos(angle), s = sin(angle), turned[3][3];
+  for (int j = 0; j < 3; j++) {
+    double v[3] = {rotation[0][j], rotation[1][j], rotation[2][j]};
+    double along = axis[0] * v[0] + axis[1] * v[1] + axis[2] * v[2];
+    for (int i = 0; i < 3; i++) {
+      int k = (i + 1) % 3, l = (i + 2) % 3;
+      turned[i][j] = c * v[i] + s * (axis[k] * v[l] - axis[l] * v[k]) + (1 - c) * along * axis[i];
+    }
+  }
+  memcpy(rotation, turned, sizeof turned);
+}
+
+/* The shortest rotation from z to the axis; half a turn about x for -z. */
+static void turn_to(const double axis[3], double rotation[3][3]) {
+  double across = hypot(axis[0], axis[1]);
+  double about[3] = {1, 0, 0};
+  if (across > 0) {
+    about[0] = -axis[1] / across;
+    about[1] = axis[0] / across;
+  }
+  rotate(rotation, about, atan2(across, axis[2]));
+}
+
+static enum status read_object(const struct reader *reader, const json_t *value,
+                               struct grasp_object *object) {
+  static const double unturned[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  double axis[3];
+  const json_t *rotation = json_object_get(value, "rotation");
+  read_vector(reader, json_object_get(value, "position"), object->place);
+  object->friction = json_number_value(json_object_get(value, "friction"));
+  object->free = has_word(value, "motion", "free");
+  object->mass = reader_member(reader, value, "mass", "g", 0.0);
+  memcpy(object->rotation, unturned, sizeof unturned);
+  enum status status = read_direction(reader, json_object_get(value, "axis"), "/object/axis",
+                                      "the axis of the object", axis);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  turn_to(axis, object->rotation);
+  if (rotation) {
+    status = read_direction(reader, json_object_get(rotation, "axis"), "/object/rotation/axis",
+                            "the axis of the rotation", axis);
+    if (status != STATUS_OK) {
+      return status;
+    }
+    rotate(object->rotation, axis, reader_member(reader, rotation, "angle", "deg", 0.0));
+  }
+  if (object->free && object->mass == 0) {
+    return error_set(reader->error, STATUS_INVALID, "/object/mass",
+                     "a free object has no mass here\na mass\n{\"mass\": \"50 g\"}");
+  }
+  return read_shape(reader, json_object_get(value, "shape"), &object->shape);
+}
+
+/* ---- course ------------------------------------------------------------------------------- */
+
+/* The plate becomes the object; where it is, the mesh has to say: its place is that from the end of
+ * the bottom centreline. */
+static enum status read_blocked(const struct reader *reader, const json_t *value,
+                                struct grasp_spec *spec) {
+  double *to = spec->blocked_direction;
+  enum status status = read_direction(reader, json_object_get(value, "direction"),
+                                      "/grasp/blocked/direction", "the direction", to);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  double back[3] = {-to[0], -to[1], -to[2]};
+  spec->blocked = true;
+  spec->blocked_distance = reader_member(reader, value, "distance", "mm", 0.0);
+  spec->object = (struct grasp_object){
+      .shape.form = GRASP_PLANE,
+      .rotation = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+      .friction = json_number_value(json_object_get(value, "friction")),
+  };
+  for (int i = 0; i < 3; i++) {
+    spec->object.place[i] = spec->blocked_distance * to[i];
+  }
+  turn_to(back, spec->object.rotation);
+  return STATUS_OK;
+}
+
+static enum status read_ways(const struct reader *reader, const json_t *course,
+                             struct grasp_spec *spec) {
+  const json_t *approach = json_object_get(course, "approach");
+  const json_t *pull = json_object_get(course, "pull");
+  read_vector(reader, json_object_get(approach, "from"), spec->approach.from);
+  spec->approach.rate = reader_member(reader, approach, "rate", "mm/s", 0.0);
+  spec->approach.steps = reader_count(approach, "steps", 0);
+  spec->inflation_time = reader_member(reader, course, "inflation_time", "s", 0.0);
+  spec->release = json_is_true(json_object_get(course, "release"));
+  if (!pull) {
+    return STATUS_OK;
+  }
+  spec->pull.distance = reader_member(reader, pull, "distance", "mm", 0.0);
+  spec->pull.rate = reader_member(reader, pull, "rate", "mm/s", 0.0);
+  spec->pull.steps = reader_count(pull, "steps", 0);
+  spec->pull.after_contact = json_number_value(json_object_get(pull, "after_contact"));
+  return read_direction(reader, json_object_get(pull, "direction"), "/grasp/pull/direction",
+                        "the direction of the pull", spec->pull.direction);
+}
+
+static void read_rest(const struct reader *reader, const json_t *course, struct grasp_spec *spec) {
+  const json_t *fingers = json_object_get(course, "fingers");
+  const json_t *dynamics = json_object_get(course, "dynamics");
+  const json_t *numerics = json_object_get(course, "numerics");
+  spec->fingers.count = reader_count(fingers, "count", 1);
+  spec->fingers.radius = reader_member(reader, fingers, "radius", "mm", 0.0);
+  spec->fingers.tilt = reader_member(reader, fingers, "tilt", "deg", 0.0);
+  spec->dynamics = !has_word(dynamics, "use", "never");
+  spec->damping_time = reader_member(reader, dynamics, "damping_time", "s", NAN);
+  spec->longest_step = reader_member(reader, numerics, "longest_step", "mm", 0.0);
+  spec->stiffness = json_number_value(json_object_get(numerics, "stiffness"));
+}
+
+/* What excludes each other. */
+static enum status check_course(const struct reader *reader, const json_t *document) {
+  const json_t *course = json_object_get(document, "grasp");
+  const json_t *object = json_object_get(document, "object");
+  static const char *const of_objects[] = {"approach", "pull", "fingers"};
+  if (!json_object_get(course, "blocked")) {
+    return object
+               ? STATUS_OK
+               : error_set(reader->error, STATUS_INVALID, "",
+                           "the key \"object\" is missing\nan object, or \"blocked\" in \"grasp\" "
+                           "for a plate\n{\"object\": {\"shape\": {\"form\": \"sphere\", "
+                           "\"diameter\": \"40 mm\"}, \"friction\": 0.6}}");
+  }
+  if (object) {
+    return error_set(reader->error, STATUS_INVALID, "/grasp/blocked",
+                     "there is an object, and a plate in its place\none of the two");
+  }
+  for (size_t i = 0; i < sizeof of_objects / sizeof *of_objects; i++) {
+    if (json_object_get(course, of_objects[i])) {
+      char pointer[40];
+      snprintf(pointer, sizeof pointer, "/grasp/%s", of_objects[i]);
+      return error_set(reader->error, STATUS_INVALID, pointer,
+                       "a blocked tip has no such stage\nleave out it or \"blocked\"");
+    }
+  }
+  return STATUS_OK;
+}
+
+enum status reader_grasp(const struct reader *reader, const json_t *document,
+                         struct job_spec *job) {
+  const json_t *course = json_object_get(document, "grasp");
+  const json_t *blocked = json_object_get(course, "blocked");
+  enum status status = check_course(reader, document);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  struct grasp_spec *spec = calloc(1, sizeof *spec);
+  if (!spec) {
+    return no_memory(reader);
+  }
+  job->kind = JOB_GRASP;
+  job->grasp = spec;
+  memcpy(spec->gravity, job->load.gravity, sizeof spec->gravity);
+  read_rest(reader, course, spec);
+  status = read_ways(reader, course, spec);
+  if (status == STATUS_OK) {
+    status = blocked ? read_blocked(reader, blocked, spec)
+                     : read_object(reader, json_object_get(document, "object"), &spec->object);
+  }
+  return status;
+}

@@ -1,0 +1,235 @@
+/* Jobs of grasps: objects and courses that are taken, and those that are refused; what the fingers
+ * of a gripper see. */
+#include <math.h>
+#include <string.h>
+
+#include "solver/job/grasp.h"
+#include "tests/unit/suite.h"
+
+static const char grasp[] =
+    "{\"kind\": \"grasp\", \"actuator\": {\"family\": \"pneunet\", \"length\": \"60 mm\", "
+    "\"width\": \"20 mm\", \"height\": \"15 mm\", \"chambers\": [{\"config\": \"B\", \"count\": "
+    "4}], \"side_wall\": \"2 mm\", \"top_wall\": \"2 mm\", \"bottom_layer\": \"4 mm\"}, "
+    "\"material\": \"dragon-skin-20\", \"load\": {\"pressure\": {\"to\": \"30 kPa\"}, \"gravity\": "
+    "[\"9.8 m/s2\", 0, 0]}, \"object\": {\"shape\": {\"form\": \"sphere\", \"diameter\": \"40 "
+    "mm\"}, \"position\": [\"50 mm\", 0, \"-30 mm\"], \"friction\": 0.5}, \"grasp\": {\"pull\": "
+    "{\"direction\": [2, 0, 0], \"distance\": \"50 mm\"}}}";
+
+#define SHAPE(text)                                                                                \
+  { "/object/shape", "{\"form\": " text "}" }
+#define BLOCKED(more)                                                                              \
+  { "/grasp", "{\"blocked\": {\"distance\": \"20 mm\"}" more "}" }
+#define NO_OBJECT                                                                                  \
+  { "/object", NULL }
+#define FINGERS                                                                                    \
+  { "/grasp/fingers", "{\"count\": 3, \"radius\": \"30 mm\", \"tilt\": \"10 deg\"}" }
+
+static const struct variant variants[] = {
+    {grasp, {{NULL}}, NULL, NULL},
+    {grasp, {{"/grasp", "{}"}}, NULL, NULL},
+    {grasp, {{"/grasp/approach", "{\"from\": [0, 0, \"-60 mm\"]}"}}, NULL, NULL},
+    {grasp, {FINGERS}, NULL, NULL},
+    {grasp, {{"/grasp/release", "true"}}, NULL, NULL},
+    {grasp, {{"/grasp/numerics", "{\"longest_step\": \"1 mm\", \"stiffness\": 2}"}}, NULL, NULL},
+    {grasp, {{"/grasp/dynamics", "{\"use\": \"never\"}"}}, NULL, NULL},
+    /* shapes */
+    {grasp, {SHAPE("\"cylinder\", \"diameter\": \"65 mm\", \"length\": \"0.2 m\"")}, NULL, NULL},
+    {grasp,
+     {SHAPE("\"cylinder\", \"diameter\": \"65 mm\", \"length\": \"9 mm\", \"rim\": \"5 mm\"")},
+     "/object/shape/rim",
+     "at most 4.5 mm"},
+    {grasp,
+     {SHAPE("\"frustum\", \"base_diameter\": \"6 cm\", \"tip_diameter\": \"85 mm\", \"length\": "
+            "\"110 mm\", \"rim\": \"3 mm\"")},
+     NULL,
+     NULL},
+    {grasp, {SHAPE("\"box\", \"size\": [\"6 cm\", \"60 mm\", \"120 mm\"]")}, NULL, NULL},
+    {grasp,
+     {SHAPE("\"box\", \"size\": [\"6 cm\", \"60 mm\", \"120 mm\"], \"edge\": \"31 mm\"")},
+     "/object/shape/edge",
+     "at most 30 mm"},
+    {grasp,
+     {SHAPE("\"revolution\", \"profile\": [[\"-5 cm\", \"3 cm\"], [0, \"2 cm\"], [\"5 cm\", 0]]")},
+     NULL,
+     NULL},
+    {grasp,
+     {SHAPE("\"revolution\", \"profile\": [[\"-5 cm\", \"3 cm\"], [\"-5 cm\", \"2 cm\"]]")},
+     "/object/shape/profile/1",
+     "-50 mm is not above the -50 mm"},
+    {grasp,
+     {SHAPE("\"revolution\", \"profile\": [[\"-5 cm\", \"3 cm\"], [0, \"-2 cm\"]]")},
+     "/object/shape/profile/1",
+     "-20 mm is negative"},
+    {grasp,
+     {SHAPE("\"revolution\", \"profile\": [[\"-5 cm\", 0], [0, 0]]")},
+     "/object/shape/profile",
+     "every radius is 0"},
+    {grasp, {SHAPE("\"plane\"")}, NULL, NULL},
+    {grasp, {SHAPE("\"surface\", \"stl\": {\"base64\": \"c29saWQgYQ==\"}")}, NULL, NULL},
+    {grasp,
+     {SHAPE("\"surface\", \"stl\": {\"base64\": \"c29s?WQgYQ==\"}")},
+     "/object/shape/stl/base64",
+     "not base64"},
+    {grasp,
+     {SHAPE("\"surface\", \"stl\": {\"file\": \"part.stl\"}")},
+     "/object/shape/stl/file",
+     "on the command line only"},
+    {grasp, {SHAPE("\"torus\"")}, "/object/shape/form", "\"sphere\""},
+    /* objects */
+    {grasp, {{"/object/friction", "-0.1"}}, "/object/friction", "0"},
+    {grasp, {{"/object/friction", NULL}}, "/object", "\"friction\" is missing"},
+    {grasp, {{"/object/axis", "[0, 0, 0]"}}, "/object/axis", "has no length"},
+    {grasp,
+     {{"/object/rotation", "{\"axis\": [0, 0, 0], \"angle\": \"5 deg\"}"}},
+     "/object/rotation/axis",
+     "has no length"},
+    {grasp, {{"/object/motion", "\"free\""}}, "/object/mass", "no mass"},
+    {grasp, {{"/object/motion", "\"free\""}, {"/object/mass", "\"50 g\""}}, NULL, NULL},
+    /* courses */
+    {grasp, {{"/grasp/pull/direction", "[0, 0, 0]"}}, "/grasp/pull/direction", "has no length"},
+    {grasp, {{"/grasp/pull/distance", "\"0 mm\""}}, "/grasp/pull/distance", ""},
+    {grasp, {{"/grasp/pull/rate", "\"-5 mm/s\""}}, "/grasp/pull/rate", ""},
+    {grasp,
+     {{"/grasp/fingers", "{\"count\": 7, \"radius\": \"30 mm\"}"}},
+     "/grasp/fingers/count",
+     "6"},
+    {grasp, {NO_OBJECT}, "", "\"object\" is missing"},
+    {grasp, {BLOCKED("")}, "/grasp/blocked", "a plate in its place"},
+    {grasp, {BLOCKED(""), NO_OBJECT}, NULL, NULL},
+    {grasp,
+     {BLOCKED(", \"pull\": {\"direction\": [1, 0, 0], \"distance\": \"1 mm\"}"), NO_OBJECT},
+     "/grasp/pull",
+     "no such stage"},
+    {grasp,
+     {BLOCKED(""), NO_OBJECT, {"/grasp/blocked/direction", "[0, 0, 0]"}},
+     "/grasp/blocked/direction",
+     "has no length"},
+};
+
+START_TEST(variants_are_taken_or_refused) {
+  suite_check_variant(&variants[_i]);
+}
+END_TEST
+
+static void read_grasp(const char *const (*edits)[2], struct job_spec *spec) {
+  struct error error = {.status = STATUS_OK};
+  ck_assert_msg(suite_read_document(grasp, edits, spec, &error) == STATUS_OK, "%s", error.message);
+  ck_assert_int_eq(spec->kind, JOB_GRASP);
+}
+
+static void check_vector(const double value[3], double x, double y, double z) {
+  const double wanted[] = {x, y, z};
+  for (int i = 0; i < 3; i++) {
+    ck_assert_double_eq_tol(value[i], wanted[i], 1e-12);
+  }
+}
+
+START_TEST(numbers_are_in_si) {
+  const char *const edits[][2] = {
+      {"/object/axis", "[0, 3, 0]"},
+      {"/object/rotation", "{\"axis\": [0, 2, 0], \"angle\": \"90 deg\"}"},
+      {"/grasp/approach", "{\"from\": [0, 0, \"-6 cm\"], \"rate\": \"1 cm/s\", \"steps\": 3}"},
+      {NULL, NULL}};
+  struct job_spec spec;
+  read_grasp(edits, &spec);
+  const struct grasp_spec *g = spec.grasp;
+  ck_assert_int_eq(spec.accuracy, ACCURACY_FAST);
+  ck_assert_double_eq_tol(g->object.shape.diameter, 0.04, 1e-15);
+  ck_assert_double_eq(g->object.friction, 0.5);
+  check_vector(g->object.place, 0.05, 0, -0.03);
+  /* z was turned to y by a turn about -x, which left x alone and brought y to -z; then about y. */
+  for (int i = 0; i < 3; i++) {
+    const double *row = g->object.rotation[i];
+    check_vector(row, i == 2 ? -1 : 0, i == 0 ? -1 : 0, i == 1 ? 1 : 0);
+  }
+  check_vector(g->approach.from, 0, 0, -0.06);
+  ck_assert_double_eq_tol(g->approach.rate, 0.01, 1e-15);
+  check_vector(g->pull.direction, 1, 0, 0);
+  ck_assert_double_eq_tol(g->pull.rate, 5e-3, 1e-15);
+  ck_assert_int_eq(g->pull.steps, 30);
+  ck_assert_double_nan(g->damping_time);
+  check_vector(g->gravity, 9.8, 0, 0);
+  job_spec_release(&spec);
+}
+END_TEST
+
+START_TEST(a_plate_faces_the_tip) {
+  const char *const edits[][2] = {BLOCKED(""), NO_OBJECT, {NULL, NULL}};
+  struct job_spec spec;
+  read_grasp(edits, &spec);
+  const struct grasp_object *plate = &spec.grasp->object;
+  ck_assert_int_eq(plate->shape.form, GRASP_PLANE);
+  check_vector(plate->place, 0, 0, -0.02);
+  ck_assert_double_eq_tol(plate->rotation[2][2], 1, 1e-15);
+  ck_assert(grasp_symmetric(spec.grasp));
+  job_spec_release(&spec);
+}
+END_TEST
+
+/* Three fingers around an object on the axis of the gripper see the same; of an object beside it
+ * only those that are each other's mirror images about the line to it would. */
+START_TEST(fingers_see_an_object_on_the_axis_alike) {
+  const char *const edits[][2] = {FINGERS, {"/object/position", "[\"50 mm\", 0, 0]"}, {NULL, NULL}};
+  struct job_spec spec;
+  read_grasp(edits, &spec);
+  struct grasp_spec seen[3];
+  for (int k = 0; k < 3; k++) {
+    seen[k] = grasp_of_finger(spec.grasp, k);
+    ck_assert(grasp_symmetric(&seen[k]));
+    ck_assert(grasp_same(&seen[0], &seen[k]));
+  }
+  double c = cos(M_PI / 18), s = sin(M_PI / 18);
+  check_vector(seen[1].object.place, 0.05 * c - 0.03 * s, 0, -0.05 * s - 0.03 * c);
+  check_vector(seen[1].pull.direction, c, 0, -s);
+  spec.grasp->object.place[2] = 0.001;
+  seen[0] = grasp_of_finger(spec.grasp, 0);
+  seen[1] = grasp_of_finger(spec.grasp, 1);
+  ck_assert(grasp_symmetric(&seen[0]));
+  ck_assert(!grasp_symmetric(&seen[1]));
+  ck_assert(!grasp_same(&seen[0], &seen[1]));
+  job_spec_release(&spec);
+}
+END_TEST
+
+/* Which poses of a shape are symmetric about y = 0. */
+START_TEST(symmetry_depends_on_shape_and_pose) {
+  static const struct {
+    enum grasp_form form;
+    double axis[3], y;
+    bool symmetric;
+  } cases[] = {
+      {GRASP_SPHERE, {0, 0, 1}, 0, true},    {GRASP_SPHERE, {0, 0, 1}, 1e-3, false},
+      {GRASP_CYLINDER, {0, 1, 0}, 0, true},  {GRASP_CYLINDER, {1, 0, 1}, 0, true},
+      {GRASP_CYLINDER, {1, 1, 0}, 0, false}, {GRASP_FRUSTUM, {0, 1, 0}, 0, false},
+      {GRASP_FRUSTUM, {1, 0, 2}, 0, true},   {GRASP_PLANE, {1, 0, 2}, 1e-3, true},
+      {GRASP_PLANE, {0, 1, 2}, 0, false},    {GRASP_BOX, {1, 0, 2}, 0, true},
+      {GRASP_BOX, {1, 1, 0}, 0, false},      {GRASP_SURFACE, {0, 0, 1}, 0, false},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    char axis[60];
+    snprintf(axis, sizeof axis, "[%g, %g, %g]", cases[i].axis[0], cases[i].axis[1],
+             cases[i].axis[2]);
+    const char *const edits[][2] = {{"/object/axis", axis}, {NULL, NULL}};
+    struct job_spec spec;
+    read_grasp(edits, &spec);
+    spec.grasp->object.shape.form = cases[i].form;
+    memcpy(spec.grasp->object.shape.size, (double[]){0.02, 0.03, 0.04}, 3 * sizeof(double));
+    spec.grasp->object.place[1] = cases[i].y;
+    ck_assert_msg(grasp_symmetric(spec.grasp) == cases[i].symmetric, "case %zu", i);
+    job_spec_release(&spec);
+  }
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("job: grasps");
+  TCase *tcase = tcase_create("all");
+  tcase_add_unchecked_fixture(tcase, suite_share_reader, suite_drop_reader);
+  tcase_add_loop_test(tcase, variants_are_taken_or_refused, 0, sizeof variants / sizeof *variants);
+  tcase_add_test(tcase, numbers_are_in_si);
+  tcase_add_test(tcase, a_plate_faces_the_tip);
+  tcase_add_test(tcase, fingers_see_an_object_on_the_axis_alike);
+  tcase_add_test(tcase, symmetry_depends_on_shape_and_pose);
+  suite_add_tcase(suite, tcase);
+  return suite_run(suite);
+}
