@@ -1,5 +1,5 @@
 #!/bin/sh
-# Includes only point downwards: base < job, explore < mesh < fe, hlpv, axi < post, verify, material, identify, snap, bistable < run,
+# Includes only point downwards: base < job, explore, rigid < mesh < fe, hlpv, axi < post, verify, material, identify, snap, bistable < run,
 # study within the solver; the server uses of the solver only base, job and explore; the solver never sees the server.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
@@ -8,6 +8,7 @@ rank() {
   solver/base/*) echo 1 ;;
   solver/job/*) echo 2 ;;
   solver/explore/*) echo 2 ;;
+  solver/rigid/*) echo 2 ;;
   solver/mesh/*) echo 3 ;;
   solver/fe/* | solver/hlpv/* | solver/axi/*) echo 4 ;;
   solver/post/* | solver/verify/* | solver/material/* | solver/identify/* | solver/snap/* | solver/bistable/*) echo 5 ;;
