@@ -126,6 +126,37 @@ static enum status parts_open_store(const struct options *options, struct parts 
   return status;
 }
 
+/* The engines that run jobs. */
+static enum status executor_open(const struct options *options, struct parts *parts,
+                                 struct error *error) {
+  struct service *service = &parts->service;
+  enum status status = executor_create(&service->executor, error);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  struct engine engine;
+  struct pool_settings settings = {.engine = {.store = service->store,
+                                              .disk = service->disk,
+                                              .tally = executor_tally(service->executor),
+                                              .data = options->data,
+                                              .solver = options->solver,
+                                              .memory_limit_bytes = options->memory_limit_bytes,
+                                              .files_limit_bytes = options->files_limit_bytes,
+                                              .time_limit_s = options->time_limit_s,
+                                              .timeout_margin_s = options->timeout_margin_s,
+                                              .retry_delay_s = options->retry_delay_s,
+                                              .changed = job_changed,
+                                              .progressed = job_progressed,
+                                              .context = service},
+                                   .isolation = &parts->isolation,
+                                   .workers = options->workers};
+  status = pool_create(&settings, &engine, error);
+  if (status == STATUS_OK) {
+    executor_add(service->executor, engine);
+  }
+  return status;
+}
+
 static enum status parts_open(const struct options *options, struct parts *parts,
                               struct error *error) {
   struct service *service = &parts->service;
@@ -157,24 +188,10 @@ static enum status parts_open(const struct options *options, struct parts *parts
     status = conductor_create(&settings, &service->conductor, error);
   }
   if (status == STATUS_OK) {
-    struct pool_settings settings = {.store = service->store,
-                                     .disk = service->disk,
-                                     .data = options->data,
-                                     .solver = options->solver,
-                                     .isolation = &parts->isolation,
-                                     .workers = options->workers,
-                                     .memory_limit_bytes = options->memory_limit_bytes,
-                                     .files_limit_bytes = options->files_limit_bytes,
-                                     .time_limit_s = options->time_limit_s,
-                                     .timeout_margin_s = options->timeout_margin_s,
-                                     .retry_delay_s = options->retry_delay_s,
-                                     .changed = job_changed,
-                                     .progressed = job_progressed,
-                                     .context = service};
-    status = pool_create(&settings, &service->pool, error);
+    status = executor_open(options, parts, error);
   }
   if (status == STATUS_OK) {
-    status = conductor_start(service->conductor, service->pool, error);
+    status = conductor_start(service->conductor, service->executor, error);
   }
   if (status == STATUS_OK) {
     status = snapshots_create(service->store, options->data, copy_made, service,
@@ -191,11 +208,11 @@ static enum status parts_open(const struct options *options, struct parts *parts
 
 static void parts_close(struct parts *parts) {
   analyst_stop(parts->service.analyst); /* it uses requests of the server */
-  server_destroy(parts->server);        /* its handlers ask the pool */
+  server_destroy(parts->server);        /* its handlers ask the executor */
   analyst_destroy(parts->service.analyst);
   snapshots_destroy(parts->service.snapshots);
-  conductor_stop(parts->service.conductor); /* it asks the pool, */
-  pool_destroy(parts->service.pool);
+  conductor_stop(parts->service.conductor); /* it asks the executor, */
+  executor_destroy(parts->service.executor);
   conductor_destroy(parts->service.conductor); /* which wakes it */
   feed_destroy(parts->service.feed);
   http_meter_destroy(parts->service.meter);
@@ -217,21 +234,21 @@ static void parts_close(struct parts *parts) {
 /* Running jobs may finish for a while; then they are put back into the queue. A second signal
  * shortens this. */
 static void drain(struct parts *parts, const sigset_t *signals, double timeout_s) {
-  struct pool *pool = parts->service.pool;
+  struct executor *executor = parts->service.executor;
   struct timespec poll = {.tv_nsec = SIGNAL_POLL_MS * 1000000L};
   int64_t until = clock_monotonic_ms() + (int64_t)(1000 * timeout_s);
   atomic_store(&parts->service.draining, true);
   log_line("shutting down: running jobs have %g s to finish", timeout_s);
   server_stop_accepting(parts->server);
-  pool_drain(pool);
-  while (!pool_idle(pool)) {
+  executor_drain(executor);
+  while (!executor_idle(executor)) {
     if (clock_monotonic_ms() >= until) {
-      pool_stop(pool, false);
+      executor_stop(executor, false);
     }
     int received = sigtimedwait(signals, NULL, &poll);
     if (received > 0 && received != SIGHUP) {
       log_line("shutting down at once");
-      pool_stop(pool, true);
+      executor_stop(executor, true);
     }
   }
 }

@@ -2,6 +2,7 @@
 #include "server/exec/pool_internal.h"
 
 #include "server/base/clock.h"
+#include "server/exec/tally.h"
 
 /* A bundle on its way. */
 struct work {
@@ -22,7 +23,7 @@ static enum status begun(void *context, size_t index, int64_t pid) {
   struct work *work = context;
   struct slot *slot = work->slot;
   const struct claim *claim = slot->member[index];
-  const struct pool_settings *settings = &slot->pool->settings;
+  const struct engine_settings *settings = &slot->pool->settings.engine;
   struct error error;
   slot->job[index].start_ms = clock_monotonic_ms();
   slot_turn(slot, claim);
@@ -41,35 +42,29 @@ static void progressed(void *context, size_t index, const struct progress *progr
   struct work *work = context;
   struct slot *slot = work->slot;
   const struct claim *claim = slot->member[index];
-  const struct pool_settings *settings = &slot->pool->settings;
+  const struct engine_settings *settings = &slot->pool->settings.engine;
   pthread_mutex_lock(&slot->pool->mutex);
   slot->progress = *progress;
   pthread_mutex_unlock(&slot->pool->mutex);
   settings->progressed(settings->context, claim->job_id, claim->attempt, progress);
 }
 
-/* All in one transaction, or, when that fails for one of them, one after the other. */
 static void ended(void *context, struct bundle_end *ends, size_t count) {
   struct work *work = context;
   struct slot *slot = work->slot;
-  const struct pool_settings *settings = &slot->pool->settings;
-  const struct attempt_outcome *outcomes[BUNDLE_MEMBERS_MAX];
-  char directory[BUNDLE_MEMBERS_MAX][SLOT_DIRECTORY_SIZE];
-  enum job_state states[BUNDLE_MEMBERS_MAX];
-  struct error error;
+  const struct engine_settings *settings = &slot->pool->settings.engine;
+  const struct ending_job *jobs[BUNDLE_MEMBERS_MAX] = {NULL};
+  struct outcome *outcomes[BUNDLE_MEMBERS_MAX] = {NULL};
+  char directory[BUNDLE_MEMBERS_MAX][ENDING_DIRECTORY_SIZE];
   for (size_t i = 0; i < count; i++) {
-    slot_fill(slot, slot->member[ends[i].member], work->troubles, directory[i], &ends[i].outcome);
-    outcomes[i] = &ends[i].outcome.attempt;
+    const struct claim *claim = slot->member[ends[i].member];
+    ending_fill(&slot->ending, claim->job_id, claim->attempt, work->troubles, directory[i],
+                &ends[i].outcome);
+    jobs[i] = &slot->job[ends[i].member];
+    outcomes[i] = &ends[i].outcome;
   }
-  bool together = count > 1 && store_attempts_finish(settings->store, outcomes, count, states,
-                                                     &error) == STATUS_OK;
+  ending_store(&slot->ending, jobs, outcomes, count);
   for (size_t i = 0; i < count; i++) {
-    const struct slot_job *job = &slot->job[ends[i].member];
-    if (together) {
-      slot_count(slot, job, &ends[i].outcome, states[i]);
-    } else {
-      slot_finish(slot, job, &ends[i].outcome);
-    }
     settings->changed(settings->context, ends[i].outcome.attempt.job_id);
   }
 }
@@ -77,7 +72,7 @@ static void ended(void *context, struct bundle_end *ends, size_t count) {
 static enum stop_cause stop_wanted(void *context) {
   struct work *work = context;
   struct pool *pool = work->slot->pool;
-  disk_check(pool->settings.disk, NULL); /* trouble that comes and goes is to be seen */
+  disk_check(pool->settings.engine.disk, NULL); /* trouble that comes and goes is to be seen */
   pthread_mutex_lock(&pool->mutex);
   enum stop_cause cause = pool->aborting ? STOP_ABORT : pool->stopping ? STOP_SHUTDOWN : STOP_NONE;
   pthread_mutex_unlock(&pool->mutex);
@@ -101,16 +96,16 @@ static void slot_load(struct slot *slot, const struct claim *claim) {
     if (claim->job_id != 0) {
       slot->cancelled[slot->members] = false;
       slot->member[slot->members++] = claim;
-      pool->statistics.attempts_started++;
     }
   }
   slot->cancel = false;
-  pool->statistics.busy += slot->members > 0 ? 1 : (unsigned)-1;
+  pool->busy += slot->members > 0 ? 1 : (unsigned)-1;
   pthread_mutex_unlock(&pool->mutex);
+  tally_attempts_started(pool->settings.engine.tally, (unsigned)slot->members);
 }
 
 void slot_run_bundle(struct slot *slot, const struct claim *claim) {
-  const struct pool_settings *settings = &slot->pool->settings;
+  const struct engine_settings *settings = &slot->pool->settings.engine;
   const struct bundle_hooks hooks = {.context = &(struct work){slot, disk_troubles(settings->disk)},
                                      .begun = begun,
                                      .progressed = progressed,
@@ -121,7 +116,8 @@ void slot_run_bundle(struct slot *slot, const struct claim *claim) {
   slot_run_settings(slot, claim, &run);
   slot_load(slot, claim);
   for (size_t k = 0; k < slot->members; k++) {
-    slot->job[k] = slot_job_read(slot, slot->member[k]);
+    slot->job[k] =
+        ending_job_read(&slot->ending, slot->member[k]->job_id, slot->member[k]->attempt);
     settings->changed(settings->context, slot->member[k]->job_id);
   }
   bundle_run(&run, slot->member, slot->members, &hooks);

@@ -27,11 +27,13 @@ struct kind {
 };
 
 struct tally {
-  pthread_mutex_t mutex; /* guards the tables, not the histograms */
+  pthread_mutex_t mutex; /* guards all but the histograms */
   struct end ends[ENDS_MAX];
   struct kind kinds[KINDS_MAX];
   size_t end_count, kind_count;
   struct histogram wait, memory;
+  uint64_t started, ended[ATTEMPT_REQUEUED + 1]; /* attempts, the latter by their end */
+  double cpu_s;                                  /* of ended workers */
 };
 
 enum status tally_create(struct tally **tally, struct error *error) {
@@ -120,6 +122,36 @@ void tally_waited(struct tally *tally, double seconds) {
   histogram_add(&tally->wait, &wait_bounds, seconds);
 }
 
+void tally_attempts_started(struct tally *tally, unsigned count) {
+  pthread_mutex_lock(&tally->mutex);
+  tally->started += count;
+  pthread_mutex_unlock(&tally->mutex);
+}
+
+void tally_attempt_ended(struct tally *tally, enum attempt_end end, double cpu_s) {
+  pthread_mutex_lock(&tally->mutex);
+  tally->ended[end]++;
+  tally->cpu_s += cpu_s;
+  pthread_mutex_unlock(&tally->mutex);
+}
+
+static void attempts_write(const struct tally *tally, FILE *out) {
+  static const char *const ends[] = {
+      [ATTEMPT_SUCCEEDED] = "succeeded",     [ATTEMPT_FAILED] = "failed",
+      [ATTEMPT_TIMED_OUT] = "timed_out",     [ATTEMPT_CANCELLED] = "cancelled",
+      [ATTEMPT_WORKER_LOST] = "worker_lost", [ATTEMPT_REQUEUED] = "requeued"};
+  meter_head(out, "pneulab_attempts_started_total", "counter", "Attempts started.");
+  fprintf(out, "pneulab_attempts_started_total %llu\n", (unsigned long long)tally->started);
+  meter_head(out, "pneulab_worker_cpu_seconds_total", "counter",
+             "Processor time of workers that have ended.");
+  fprintf(out, "pneulab_worker_cpu_seconds_total %.3f\n", tally->cpu_s);
+  meter_head(out, "pneulab_attempts_ended_total", "counter", "Attempts ended, by outcome.");
+  for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
+    fprintf(out, "pneulab_attempts_ended_total{outcome=\"%s\"} %llu\n", ends[i],
+            (unsigned long long)tally->ended[i]);
+  }
+}
+
 static void tables_write(struct tally *tally, FILE *out) {
   meter_head(out, "pneulab_jobs_finished_total", "counter",
              "Jobs that a worker of this daemon brought to an end, by how.");
@@ -139,6 +171,7 @@ static void tables_write(struct tally *tally, FILE *out) {
 
 void tally_write(struct tally *tally, FILE *out) {
   pthread_mutex_lock(&tally->mutex);
+  attempts_write(tally, out);
   tables_write(tally, out);
   pthread_mutex_unlock(&tally->mutex);
   meter_head(out, "pneulab_queue_wait_seconds", "histogram",

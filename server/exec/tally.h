@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "solver/base/error.h"
+#include "server/store/store.h"
 
 struct tally;
 
@@ -28,10 +28,15 @@ struct tally_attempt {
 /* From any thread. */
 void tally_ended(struct tally *tally, const struct tally_attempt *attempt);
 
+/* Attempts have begun; one has ended so, after that much processor time. From any thread. */
+void tally_attempts_started(struct tally *tally, unsigned count);
+void tally_attempt_ended(struct tally *tally, enum attempt_end end, double cpu_s);
+
 /* A job was taken out of the queue after so many seconds. */
 void tally_waited(struct tally *tally, double seconds);
 
-/* Writes jobs finished, solve times, waiting times and memory in the text form of Prometheus. */
+/* Writes attempts, jobs finished, solve times, waiting times and memory in the text form of
+ * Prometheus. */
 void tally_write(struct tally *tally, FILE *out);
 
 #endif

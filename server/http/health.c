@@ -16,7 +16,7 @@ void health_ready(struct request *request, struct reply *reply) {
   } else if (disk_check(request->service->disk, &error) != STATUS_OK ||
              store_counts(request->service->store, counts, &error) != STATUS_OK) {
     reply_problem(reply, 503, status_word(error.status), "%s", error.message);
-  } else if (pool_check(request->service->pool, &error) != STATUS_OK) {
+  } else if (executor_check(request->service->executor, &error) != STATUS_OK) {
     reply_problem(reply, 503, "workers", "%s", error.message);
   } else {
     reply_json(reply, 200, json_pack("{s:s}", "status", "ready"));

@@ -75,7 +75,7 @@ void job_cancel(struct request *request, struct reply *reply) {
     return;
   }
   if (state == JOB_STATE_CANCELLING) {
-    pool_cancel(service->pool, id);
+    executor_cancel(service->executor, id);
   } else {
     waiters_job_ended(service->waiters, id);
   }
@@ -93,7 +93,7 @@ static void job_hold_set(struct request *request, struct reply *reply, bool hold
     reply_error(reply, &error);
     return;
   }
-  pool_wake(request->service->pool);
+  executor_wake(request->service->executor);
   conductor_wake(request->service->conductor);
   job_view_reply(request, reply, 200, id, false);
 }

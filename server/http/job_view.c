@@ -27,7 +27,7 @@ static void progress_set(const struct service *service, const struct job_record 
                          json_t *view) {
   struct progress progress = progress_none();
   bool terminal = job_state_terminal(record->state);
-  bool reported = !terminal && (pool_progress(service->pool, record->id, &progress) ||
+  bool reported = !terminal && (executor_progress(service->executor, record->id, &progress) ||
                                 conductor_progress(service->conductor, record->id, &progress));
   json_t *fraction = json_real(reported ? progress.fraction : 0);
   if (terminal) {

@@ -73,7 +73,7 @@ void submission_take(struct request *request, struct reply *reply, const char *t
     log_event(LOG_LEVEL_INFO, "job submitted", LOG_NUMBER("job", id),
               LOG_TEXT("caller", request->caller.name), LOG_TEXT("request", request->id));
   }
-  pool_wake(service->pool);
+  executor_wake(service->executor);
   conductor_wake(service->conductor);
   job_view_reply_waiting(request, reply, answered ? 200 : 202, id, true);
 }

@@ -10,7 +10,6 @@
 #include "server/base/clock.h"
 #include "server/base/meter.h"
 #include "server/exec/isolation.h"
-#include "server/exec/tally.h"
 #include "server/http/connections.h"
 #include "server/http/feed.h"
 #include "server/http/handlers.h"
@@ -27,29 +26,6 @@ static void jobs_write(FILE *out, const int64_t counts[JOB_STATE_COUNT]) {
     fprintf(out, "pneulab_jobs{state=\"%s\"} %lld\n", job_state_word((enum job_state)i),
             (long long)counts[i]);
   }
-}
-
-static void pool_write(FILE *out, struct pool *pool) {
-  static const char *const ends[] = {
-      [ATTEMPT_SUCCEEDED] = "succeeded",     [ATTEMPT_FAILED] = "failed",
-      [ATTEMPT_TIMED_OUT] = "timed_out",     [ATTEMPT_CANCELLED] = "cancelled",
-      [ATTEMPT_WORKER_LOST] = "worker_lost", [ATTEMPT_REQUEUED] = "requeued"};
-  struct pool_statistics statistics;
-  pool_statistics(pool, &statistics);
-  gauge(out, "pneulab_workers", "Worker processes that may run at a time.", statistics.workers);
-  gauge(out, "pneulab_workers_busy", "Worker processes that run.", statistics.busy);
-  meter_head(out, "pneulab_attempts_started_total", "counter", "Attempts started.");
-  fprintf(out, "pneulab_attempts_started_total %llu\n",
-          (unsigned long long)statistics.attempts_started);
-  meter_head(out, "pneulab_worker_cpu_seconds_total", "counter",
-             "Processor time of workers that have ended.");
-  fprintf(out, "pneulab_worker_cpu_seconds_total %.3f\n", statistics.cpu_s);
-  meter_head(out, "pneulab_attempts_ended_total", "counter", "Attempts ended, by outcome.");
-  for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
-    fprintf(out, "pneulab_attempts_ended_total{outcome=\"%s\"} %llu\n", ends[i],
-            (unsigned long long)statistics.attempts_ended[i]);
-  }
-  tally_write(pool_tally(pool), out);
 }
 
 static void isolation_write(FILE *out, const struct isolation *isolation) {
@@ -124,7 +100,7 @@ void metrics_show(struct request *request, struct reply *reply) {
     if (store_counts(service->store, counts, &error) == STATUS_OK) {
       jobs_write(out, counts); /* the rest is there even when the database is not */
     }
-    pool_write(out, service->pool);
+    executor_metrics(service->executor, out);
     isolation_write(out, service->isolation);
     store_metrics(service->store, out);
     http_meter_write(service->meter, out);

@@ -87,7 +87,7 @@ static void progress_write(struct html *html, const struct index *page,
     return;
   }
   const struct service *service = page->request->service;
-  if (!pool_progress(service->pool, job->id, &progress)) {
+  if (!executor_progress(service->executor, job->id, &progress)) {
     conductor_progress(service->conductor, job->id, &progress);
   }
   if (progress.steps > 0 && strcmp(job->kind, "study") == 0) {

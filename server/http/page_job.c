@@ -37,7 +37,7 @@ static void progress_write(struct html *html, const struct job_page *page) {
     return;
   }
   const struct service *service = page->request->service;
-  if (!pool_progress(service->pool, page->record.id, &progress)) {
+  if (!executor_progress(service->executor, page->record.id, &progress)) {
     conductor_progress(service->conductor, page->record.id, &progress);
   }
   double share = fmin(fmax(progress.fraction, 0), 1);

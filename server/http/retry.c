@@ -151,7 +151,7 @@ void job_retry(struct request *request, struct reply *reply) {
     reply_error(reply, &error);
     return;
   }
-  pool_wake(request->service->pool);
+  executor_wake(request->service->executor);
   conductor_wake(request->service->conductor);
   job_view_reply_waiting(request, reply, 202, new_id, true);
 }

@@ -11,7 +11,7 @@
 
 #include "server/base/caller.h"
 #include "server/exec/disk.h"
-#include "server/exec/pool.h"
+#include "server/exec/executor.h"
 #include "server/http/url.h"
 #include "server/store/store.h"
 
@@ -36,7 +36,7 @@ enum { HTTP_BODY_MAX = 1 << 20, HTTP_WAIT_MAX_S = 60, CLIENT_SIZE = 46 };
 /* Shared by all requests; everything pointed to outlives the server. */
 struct service {
   struct store *store;
-  struct pool *pool;
+  struct executor *executor;   /* runs jobs */
   struct conductor *conductor; /* runs studies */
   struct disk *disk;
   struct waiters *waiters;

@@ -123,7 +123,7 @@ static double running_fractions(struct conductor *conductor, int64_t id) {
   store_study_running(conductor->settings.store, id, ids, sizeof ids / sizeof *ids, &count, NULL);
   for (size_t i = 0; i < count; i++) {
     struct progress progress;
-    sum += pool_progress(conductor->pool, ids[i], &progress) ? progress.fraction : 0;
+    sum += executor_progress(conductor->executor, ids[i], &progress) ? progress.fraction : 0;
   }
   return sum;
 }
@@ -170,7 +170,7 @@ static void finish(struct conductor *conductor, struct work *work) {
   }
   ended.state = job_state_word(state);
   ended.wall_s = 1e-3 * (double)(clock_monotonic_ms() - work->start_ms);
-  tally_ended(pool_tally(conductor->pool), &ended);
+  tally_ended(executor_tally(conductor->executor), &ended);
   log_event(LOG_LEVEL_INFO, "study ended", LOG_NUMBER("study", work->id),
             LOG_TEXT("state", ended.state), LOG_NUMBER("wall_s", ended.wall_s));
   int64_t id = work->id;
@@ -200,7 +200,7 @@ static bool step_add(struct conductor *conductor, struct work *work) {
   }
   enum status status = work_add(&conductor->settings, work, &more, &error);
   if (status == STATUS_OK) {
-    pool_wake(conductor->pool);
+    executor_wake(conductor->executor);
     if (work->stored) {
       view_make(conductor, work->id);
     }
@@ -356,8 +356,9 @@ static void *conductor_main(void *context) {
   return NULL;
 }
 
-enum status conductor_start(struct conductor *conductor, struct pool *pool, struct error *error) {
-  conductor->pool = pool;
+enum status conductor_start(struct conductor *conductor, struct executor *executor,
+                            struct error *error) {
+  conductor->executor = executor;
   if (pthread_create(&conductor->thread, NULL, conductor_main, conductor) != 0) {
     return error_set(error, STATUS_NO_MEMORY, NULL, "Cannot start the thread of the studies.");
   }

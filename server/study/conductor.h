@@ -1,11 +1,11 @@
 /* Runs studies: a thread that takes jobs of the kind "study", stores their members as jobs of their
  * own, lets those follow what becomes of the study, and when all have ended makes its result. The
- * members themselves are run by the pool. After a restart a study goes on where it was. */
+ * members themselves are run by the executor. After a restart a study goes on where it was. */
 #ifndef PNEULAB_STUDY_CONDUCTOR_H
 #define PNEULAB_STUDY_CONDUCTOR_H
 
 #include "server/exec/disk.h"
-#include "server/exec/pool.h"
+#include "server/exec/executor.h"
 #include "server/exec/progress.h"
 #include "server/store/store.h"
 #include "solver/job/spec.h"
@@ -29,9 +29,10 @@ struct conductor_settings {
 enum status conductor_create(const struct conductor_settings *settings,
                              struct conductor **conductor, struct error *error);
 
-/* Starts the thread; the pool runs the members, and lives until
+/* Starts the thread; the executor runs the members, and lives until
  * conductor_stop. STATUS_NO_MEMORY. */
-enum status conductor_start(struct conductor *conductor, struct pool *pool, struct error *error);
+enum status conductor_start(struct conductor *conductor, struct executor *executor,
+                            struct error *error);
 
 /* Tells that a job has changed. From any thread; costs next to nothing. */
 void conductor_wake(struct conductor *conductor);

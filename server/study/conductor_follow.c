@@ -26,7 +26,7 @@ bool conductor_follow(struct conductor *conductor, int64_t id, enum study_order 
     conductor_complain(id, &error);
   }
   if (count > 0 && order == STUDY_RELEASE) {
-    pool_wake(conductor->pool);
+    executor_wake(conductor->executor);
   }
   return count == FOLLOW_MAX;
 }
@@ -41,7 +41,7 @@ void conductor_cancel_running(struct conductor *conductor, int64_t id) {
   }
   for (size_t i = 0; i < count; i++) {
     if (store_cancel(conductor->settings.store, ids[i], &state, NULL) == STATUS_OK) {
-      pool_cancel(conductor->pool, ids[i]);
+      executor_cancel(conductor->executor, ids[i]);
     }
   }
   free(ids);

@@ -8,7 +8,7 @@
 
 struct conductor {
   struct conductor_settings settings;
-  struct pool *pool;
+  struct executor *executor;
   pthread_t thread;
   bool started;
   struct work *first; /* changed by the thread only, under the mutex */
