@@ -109,7 +109,17 @@ bool element_evaluate(const struct element_geometry *geometry, const struct mate
                       double bulk_modulus, double u[3][HEX27_STRIDE],
                       const double p[ELEMENT_PRESSURES], double residual[ELEMENT_DOFS],
                       double *packed, struct element_internal *internal) {
-  struct element_arguments a = {geometry, material, bulk_modulus, u, p, residual, packed, internal};
+  return element_evaluate_damped(geometry, material, bulk_modulus, NULL, u, p, residual, packed,
+                                 internal);
+}
+
+bool element_evaluate_damped(const struct element_geometry *geometry,
+                             const struct material_spec *material, double bulk_modulus,
+                             const struct element_viscosity *viscosity, double u[3][HEX27_STRIDE],
+                             const double p[ELEMENT_PRESSURES], double residual[ELEMENT_DOFS],
+                             double *packed, struct element_internal *internal) {
+  struct element_arguments a = {geometry, material, bulk_modulus, viscosity, u,
+                                p,        residual, packed,       internal};
   switch (lanes_width()) {
   case 512:
     return element_evaluate_512(&a);

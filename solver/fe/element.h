@@ -32,6 +32,15 @@ struct element_internal {
   double residual[ELEMENT_PRESSURES];                   /* r_m */
 };
 
+/* Kelvin-Voigt damping: adds S = stiffness (C - history) to the second Piola-Kirchhoff stress, C =
+ * F^T F. With the history an average of earlier C and the stiffness a viscosity over a time, that
+ * is viscosity times dC/dt: no rigid motion, however far, changes C, and the potential stiffness/4
+ * |C - history|^2 leaves the tangent symmetric. */
+struct element_viscosity {
+  double stiffness;                /* Pa */
+  double history[6][HEX27_STRIDE]; /* 00 01 02 11 12 22, at the Gauss points, padded with zeros */
+};
+
 /* Fills the geometry from the nodes x[27][3] (m). Returns the volume in m3, or a value <= 0
  * when the map is not invertible at a Gauss point. The tables must outlive the geometry. */
 double element_geometry_fill(const struct hex27_tables *tables, double x[HEX27_NODES][3],
@@ -46,6 +55,13 @@ bool element_evaluate(const struct element_geometry *geometry, const struct mate
                       double bulk_modulus, double u[3][HEX27_STRIDE],
                       const double p[ELEMENT_PRESSURES], double residual[ELEMENT_DOFS],
                       double *packed, struct element_internal *internal);
+
+/* The same of a body with damping; viscosity may be NULL. */
+bool element_evaluate_damped(const struct element_geometry *geometry,
+                             const struct material_spec *material, double bulk_modulus,
+                             const struct element_viscosity *viscosity, double u[3][HEX27_STRIDE],
+                             const double p[ELEMENT_PRESSURES], double residual[ELEMENT_DOFS],
+                             double *packed, struct element_internal *internal);
 
 /* Change of the pressures that belongs to the displacement step du[81]:
  * dp = -(dr/dp)^-1 (r + dr/du du). `share` scales r (1 for a full Newton step). */

@@ -9,6 +9,7 @@ struct element_arguments {
   const struct element_geometry *geometry;
   const struct material_spec *material;
   double bulk_modulus;
+  const struct element_viscosity *viscosity; /* may be NULL */
   double (*u)[HEX27_STRIDE];
   const double *p;
   double *residual, *packed;

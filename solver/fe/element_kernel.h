@@ -112,6 +112,43 @@ LANES_INLINE void add_volumetric(const lanes *pj, const lanes g[9], lanes stress
   }
 }
 
+/* With S = stiffness (C - history): stress F S, and tangent
+ *   d_ik S_JL + stiffness (F_iL F_kJ + B_ik d_JL),   B = F F^T */
+LANES_INLINE void add_viscous(const struct element_viscosity *viscosity, int block,
+                              const lanes f[9], lanes stress[9], lanes *tangent) {
+  lanes second[9];
+  double stiffness = viscosity->stiffness;
+  int row = 0;
+  for (int j = 0; j < 3; j++) {
+    for (int l = j; l < 3; l++, row++) {
+      lanes c = f[j] * f[l] + f[3 + j] * f[3 + l] + f[6 + j] * f[6 + l];
+      c = stiffness * (c - *(const lanes *)(viscosity->history[row] + LANES * block));
+      second[3 * j + l] = second[3 * l + j] = c;
+    }
+  }
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) {
+      for (int l = 0; l < 3; l++) {
+        stress[3 * i + j] += f[3 * i + l] * second[3 * l + j];
+      }
+    }
+  }
+  for (int i = 0; tangent && i < 3; i++) {
+    for (int k = i; k < 3; k++, tangent += 9) {
+      lanes b = f[3 * i] * f[3 * k] + f[3 * i + 1] * f[3 * k + 1] + f[3 * i + 2] * f[3 * k + 2];
+      for (int j = 0; j < 3; j++) {
+        tangent[4 * j] += stiffness * b;
+        for (int l = 0; l < 3; l++) {
+          tangent[3 * j + l] += stiffness * f[3 * i + l] * f[3 * k + j];
+          if (i == k) {
+            tangent[3 * j + l] += second[3 * j + l];
+          }
+        }
+      }
+    }
+  }
+}
+
 /* to_id = weight sum_J dxi_d/dX_J from_iJ */
 LANES_INLINE void pull_back(const lanes scaled[9], const lanes from[9], int block,
                             double (*to)[HEX27_STRIDE]) {
@@ -145,7 +182,8 @@ LANES_INLINE void pull_back_twice(const lanes scaled[9], const lanes inverse[9],
 
 /* The response at the points of a block; false when one of them is turned inside out. */
 LANES_INLINE bool respond(const struct element_geometry *geometry,
-                          const struct material_spec *material, double bulk_modulus, int block,
+                          const struct material_spec *material, double bulk_modulus,
+                          const struct element_viscosity *viscosity, int block,
                           double u[3][HEX27_STRIDE], const double p[ELEMENT_PRESSURES],
                           bool with_tangent, struct response *r) {
   struct lanes_point x;
@@ -172,6 +210,9 @@ LANES_INLINE bool respond(const struct element_geometry *geometry,
   } else {
     inverse_cube_root(&x.j, &x.root);
     lanes_isochoric(material, &x, &energy, stress, with_tangent ? tangent : NULL);
+  }
+  if (viscosity) {
+    add_viscous(viscosity, block, x.f, stress, with_tangent ? tangent : NULL);
   }
   lanes pj = pressure * x.j;
   add_volumetric(&pj, x.g, stress, with_tangent ? tangent : NULL);
@@ -383,13 +424,13 @@ LANES_INLINE void spread(double columns[HEX27_NODES][RIGHT], double residual[ELE
 
 LANES_INLINE bool evaluate(const struct element_geometry *geometry,
                            const struct material_spec *material, double bulk_modulus,
-                           double u[3][HEX27_STRIDE], const double p[ELEMENT_PRESSURES],
-                           double residual[ELEMENT_DOFS], double *packed,
-                           struct element_internal *internal) {
+                           const struct element_viscosity *viscosity, double u[3][HEX27_STRIDE],
+                           const double p[ELEMENT_PRESSURES], double residual[ELEMENT_DOFS],
+                           double *packed, struct element_internal *internal) {
   ALIGNED struct response r;
   ALIGNED double columns[HEX27_NODES][RIGHT];
   for (int block = 0; block < BLOCKS; block++) {
-    if (!respond(geometry, material, bulk_modulus, block, u, p, packed != NULL, &r)) {
+    if (!respond(geometry, material, bulk_modulus, viscosity, block, u, p, packed != NULL, &r)) {
       return false;
     }
   }
@@ -426,8 +467,8 @@ LANES_INLINE bool evaluate(const struct element_geometry *geometry,
 
 /* Apart with and without tangent, so that neither carries the other's tests. */
 LANES_INLINE bool evaluate_either(const struct element_arguments *a) {
-  return a->packed ? evaluate(a->geometry, a->material, a->bulk_modulus, a->u, a->p, a->residual,
-                              a->packed, a->internal)
-                   : evaluate(a->geometry, a->material, a->bulk_modulus, a->u, a->p, a->residual,
-                              NULL, a->internal);
+  return a->packed ? evaluate(a->geometry, a->material, a->bulk_modulus, a->viscosity, a->u, a->p,
+                              a->residual, a->packed, a->internal)
+                   : evaluate(a->geometry, a->material, a->bulk_modulus, a->viscosity, a->u, a->p,
+                              a->residual, NULL, a->internal);
 }

@@ -98,7 +98,7 @@ static void apply(struct equilibrium *s, struct fe_state *state, double *correct
   retraction_apply(s->retraction, state->u, s->increment);
 }
 
-static enum status check_limits(const struct equilibrium *s) {
+enum status equilibrium_check_limits(const struct equilibrium *s) {
   const struct equilibrium_options *o = &s->options;
   if (o->cancelled && o->cancelled(o->cancel_context)) {
     return STATUS_CANCELLED;
@@ -226,7 +226,7 @@ static enum status newton(struct equilibrium *s, struct fe_load *load, double st
   s->most_negative = 0;
   for (int it = 0; it < s->options.max_iterations; it++) {
     load->stiffness_pressure = it == 0 ? stiffness_pressure : load->pressure;
-    enum status status = check_limits(s);
+    enum status status = equilibrium_check_limits(s);
     if (status == STATUS_OK) {
       status = model_evaluate(m, state, load, true);
     }

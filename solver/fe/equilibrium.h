@@ -32,6 +32,7 @@ struct equilibrium {
   struct fe_model *model;
   struct retraction *retraction;
   struct equilibrium_options options;
+  double length;         /* largest extent of the body, m */
   struct fe_state saved; /* before the increment that is being tried */
   double *step;          /* dof_count */
   double *chord;         /* dof_count */
@@ -49,6 +50,9 @@ struct equilibrium {
 enum status equilibrium_create(struct fe_model *model, struct equilibrium **out,
                                struct error *error);
 void equilibrium_destroy(struct equilibrium *solver);
+
+/* STATUS_OK, or CANCELLED or TIMEOUT when it is time to stop. */
+enum status equilibrium_check_limits(const struct equilibrium *solver);
 
 /* Brings `state` into equilibrium with `load`; the multipliers of the state and of the contact
  * are renewed. previous_pressure is that of the state's own equilibrium: the first iteration

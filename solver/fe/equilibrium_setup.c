@@ -23,6 +23,7 @@ enum status equilibrium_create(struct fe_model *model, struct equilibrium **out,
   }
   double length = body_length(model->mesh);
   s->model = model;
+  s->length = length;
   s->options.longest_step = 0.25 * length;
   s->options.step_tolerance = 1e-6 * length;
   s->options.traction_tolerance = 1e-2 * material_shear_modulus(&model->material);

@@ -6,6 +6,8 @@
 #include "solver/fe/element.h"
 #include "solver/fe/ldlt.h"
 
+struct inertia;
+
 /* Unknowns of one equilibrium state. */
 struct fe_state {
   double *u;      /* node_count x 3, m */
@@ -47,11 +49,13 @@ struct fe_model {
   double *element_value; /* packed tangents */
   double *contact_value; /* packed tangents */
   const double **clique_value;
-  bool use_contact;   /* of the surface with itself */
-  bool pattern_stale; /* the pairs of the contact are not those of the analysis */
+  struct inertia *inertia; /* adds to residual and tangent while a step in time is solved, else
+                            * NULL; borrowed */
+  bool use_contact;        /* of the surface with itself */
+  bool pattern_stale;      /* the pairs of the contact are not those of the analysis */
   struct contact contact;
   struct ldlt *ldlt;
-  struct ldlt *spare; /* the analysis of another model, or NULL */
+  struct ldlt *spare;            /* the analysis of another model, or NULL */
   struct ldlt_statistics factor; /* of the last analysis */
   struct fe_statistics statistics;
 };

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 #include "solver/base/clock.h"
+#include "solver/fe/inertia.h"
 #include "solver/fe/model_internal.h"
 #include "solver/fe/pressure.h"
 
@@ -56,12 +57,18 @@ static enum status evaluate_elements(struct fe_model *m, const struct fe_state *
     double u[3][HEX27_STRIDE], residual[ELEMENT_DOFS];
     double *packed = tangent ? m->element_value + (size_t)e * ELEMENT_PACKED : NULL;
     model_gather(m, state->u, e, u);
-    if (!element_evaluate(&m->geometry[e], &m->material, m->bulk_modulus, u,
-                          state->p + ELEMENT_PRESSURES * e, residual, packed, &m->internal[e])) {
+    const struct element_viscosity *viscosity =
+        m->inertia ? inertia_viscosity(m->inertia, e) : NULL;
+    if (!element_evaluate_damped(&m->geometry[e], &m->material, m->bulk_modulus, viscosity, u,
+                                 state->p + ELEMENT_PRESSURES * e, residual, packed,
+                                 &m->internal[e])) {
       return STATUS_INVERTED;
     }
     for (int f = m->cavity_start[e]; f < m->cavity_start[e + 1]; f++) {
       add_pressure(m, state->u, &m->cavity_face[f], load, residual, packed);
+    }
+    if (m->inertia) {
+      inertia_add(m->inertia, mesh, e, state->u, residual, packed);
     }
     const int *nodes = mesh->element_nodes + (size_t)HEX27_NODES * (size_t)e;
     for (int r = 0; r < ELEMENT_DOFS; r++) {

@@ -1,0 +1,266 @@
+#include "solver/fe/dynamics.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { ATTEMPTS = 30, EASY_ITERATIONS = 6 };
+
+/* Step control: after a failure; least and most change; changes put up with, so that the factor
+ * serves several steps; error at which a step is repeated, in tolerances. */
+static const double cut_factor = 0.4, least_change = 0.4, most_change = 2;
+static const double steady_low = 0.8, steady_high = 1.4, too_much = 2;
+/* The corrections of a step stop this far below its error, in tolerances. */
+static const double solved = 1e-4;
+/* Largest ratio of steps for differences of second order (they are stable up to 2.4). */
+static const double difference_ratio = 2.2;
+
+/* Coefficients of the method; see dynamics.h. */
+struct method {
+  double alpha, beta, gamma;
+};
+
+static struct method method_of(const struct dynamics *d) {
+  double alpha = (d->options.fast - 1) / (d->options.fast + 1);
+  return (struct method){alpha, 0.25 * (1 - alpha) * (1 - alpha), 0.5 - alpha};
+}
+
+/* The acceleration of the method is that of a moment (-alpha) steps before the state's. For a step
+ * of another length it is wanted at another moment: on the line through that and the balanced one,
+ * which is the state's own. */
+static double start_acceleration(const struct motion *motion, double h, int i) {
+  double ratio = motion->last > 0 ? h / motion->last : 1;
+  return motion->acceleration[i] + (1 - ratio) * (motion->balanced[i] - motion->acceleration[i]);
+}
+
+/* Viscous stress by differences of second order (of first order at the start): dC/dt = k1 (C -
+ * history) at the end of the step. */
+static void prepare_viscosity(struct dynamics *d, const struct fe_state *state,
+                              const struct motion *motion, double h) {
+  double ratio = motion->last > 0 ? h / motion->last : 0;
+  double w = ratio <= difference_ratio ? ratio : 0;
+  double rate = (1 + 2 * w) / ((1 + w) * h);
+  inertia_set_viscosity(d->inertia, d->model, d->options.viscosity * rate,
+                        (1 + w) * (1 + w) / (1 + 2 * w), state->u, -w * w / (1 + 2 * w),
+                        motion->before);
+}
+
+/* What the step adds to the equilibrium at its end. */
+static void prepare(struct dynamics *d, const struct fe_state *state, const struct motion *motion,
+                    double h) {
+  struct method k = method_of(d);
+  struct inertia *inertia = d->inertia;
+  double drag = d->options.drag;
+  double by_velocity = -(1 - k.alpha) / (k.beta * h) - drag * (k.gamma / k.beta - 1);
+  double by_acceleration =
+      k.alpha - (1 - k.alpha) * (0.5 / k.beta - 1) + drag * h * (1 - 0.5 * k.gamma / k.beta);
+  inertia->stiffness = (1 - k.alpha) / (k.beta * h * h) + drag * k.gamma / (k.beta * h);
+  for (int i = 0; i < 3 * d->model->mesh->node_count; i++) {
+    inertia->start[i] = state->u[i];
+    inertia->offset[i] =
+        by_velocity * motion->velocity[i] + by_acceleration * start_acceleration(motion, h, i);
+  }
+  prepare_viscosity(d, state, motion, h);
+}
+
+/* Accelerations of the method at the end of a step, into d->work, and the step's error. */
+static void measure(struct dynamics *d, const struct fe_state *state, const struct motion *motion,
+                    double h) {
+  struct method k = method_of(d);
+  double sum = 0;
+  for (int i = 0; i < 3 * d->model->mesh->node_count; i++) {
+    double start = start_acceleration(motion, h, i);
+    double moved = state->u[i] - d->saved.u[i] - h * motion->velocity[i];
+    d->work[i] = moved / (k.beta * h * h) - (0.5 / k.beta - 1) * start;
+    sum += (d->work[i] - start) * (d->work[i] - start);
+  }
+  double factor = 0.5 * k.alpha + k.beta - 1.0 / 6;
+  d->error = fabs(factor) * h * h * sqrt(3 * sum / d->model->dof_count);
+}
+
+/* Solves for the state at the end of a step; on failure the state is that at its start. */
+static enum status solve(struct dynamics *d, const struct fe_load *load, double pressure_before,
+                         double h, struct fe_state *state, const struct motion *motion) {
+  struct equilibrium *solver = d->solver;
+  double tolerance = solver->options.step_tolerance;
+  int iterations = 0;
+  state_copy(d->model, &d->saved, state);
+  prepare(d, state, motion, h);
+  solver->factor_fits =
+      d->factor_step == h && d->factorizations == d->model->statistics.factorizations;
+  solver->pressure_step = 0;
+  solver->options.step_tolerance = fmin(tolerance, solved * d->options.tolerance);
+  d->model->inertia = d->inertia;
+  enum status status = equilibrium_solve(solver, load, pressure_before, state, &iterations);
+  d->model->inertia = NULL;
+  solver->options.step_tolerance = tolerance;
+  d->factor_step = solver->factor_fits ? h : 0;
+  d->factorizations = d->model->statistics.factorizations;
+  solver->factor_fits = false;
+  solver->pressure_step = 0;
+  d->statistics.iterations += iterations;
+  d->last_iterations = iterations;
+  if (status != STATUS_OK) {
+    state_copy(d->model, state, &d->saved);
+    return status;
+  }
+  measure(d, state, motion, h);
+  return STATUS_OK;
+}
+
+/* The motion and the ledger take over what `solve` has found. */
+static void accept(struct dynamics *d, const struct fe_load *load, double h,
+                   const struct fe_state *state, struct motion *motion, struct energy *energy) {
+  struct method k = method_of(d);
+  double power = motion->power;
+  for (int i = 0; i < 3 * d->model->mesh->node_count; i++) {
+    double start = start_acceleration(motion, h, i), end = d->work[i];
+    motion->velocity[i] += h * ((1 - k.gamma) * start + k.gamma * end);
+    motion->balanced[i] = (1 - k.alpha) * end + k.alpha * start;
+    motion->acceleration[i] = end;
+    motion->before[i] = d->saved.u[i];
+  }
+  motion->kinetic = inertia_kinetic(d->inertia, motion->velocity);
+  motion->power = energy_viscous_power(d->model, d->inertia, state, d->options.viscosity) +
+                  2 * d->options.drag * motion->kinetic;
+  motion->time += h;
+  motion->last = h;
+  d->statistics.steps++;
+  if (energy) {
+    struct energy_step step = {.kinetic = motion->kinetic,
+                               .damping = 0.5 * h * (power + motion->power)};
+    energy_record(energy, d->model, state, load, &step);
+  }
+}
+
+enum status dynamics_step(struct dynamics *d, const struct fe_load *load, double pressure_before,
+                          struct fe_state *state, struct motion *motion, struct energy *energy) {
+  enum status status = solve(d, load, pressure_before, motion->step, state, motion);
+  if (status == STATUS_OK) {
+    accept(d, load, motion->step, state, motion, energy);
+  }
+  return status;
+}
+
+static bool final(enum status status) {
+  return status == STATUS_TIMEOUT || status == STATUS_CANCELLED || status == STATUS_NO_MEMORY;
+}
+
+/* Length of the step to try: one that would leave a sliver before `until` ends on it. */
+static double next_step(const struct dynamics *d, const struct motion *motion, double until) {
+  double h = fmin(motion->step, d->options.longest), left = until - motion->time;
+  return left < 1.05 * h ? left : left < 1.9 * h ? 0.5 * left : h;
+}
+
+/* The change of the step that brings its error, of third order, to the tolerance. */
+static double wanted_change(const struct dynamics *d) {
+  double ratio = 0.9 * cbrt(d->options.tolerance / fmax(d->error, 1e-12 * d->options.tolerance));
+  return fmax(least_change, fmin(most_change, ratio));
+}
+
+/* The length to go on with after an accepted step of length h. */
+static double following_step(const struct dynamics *d, const struct motion *motion, double h) {
+  double change = wanted_change(d);
+  bool hard = d->last_iterations > EASY_ITERATIONS;
+  if ((change > steady_low && change < steady_high) || (change > 1 && hard)) {
+    change = 1;
+  }
+  double next = change * h;
+  /* A step cut short by the end says nothing against longer ones. */
+  return change >= 1 ? fmax(next, motion->step) : next;
+}
+
+/* One attempt with length h. *again: it did not do, motion->step is shorter. */
+static enum status attempt(struct dynamics *d, const struct dynamics_drive *drive, double h,
+                           struct fe_load *load, struct fe_state *state, struct motion *motion,
+                           struct energy *energy, bool *again) {
+  struct fe_load end = *load;
+  enum status status = equilibrium_check_limits(d->solver);
+  *again = false;
+  if (status == STATUS_OK && drive && drive->drive) {
+    status = drive->drive(drive->context, motion->time + h, &end);
+  }
+  if (status != STATUS_OK) {
+    return status;
+  }
+  status = solve(d, &end, load->pressure, h, state, motion);
+  if (status != STATUS_OK) {
+    *again = !final(status);
+    motion->step = cut_factor * h;
+    return status;
+  }
+  if (d->error > too_much * d->options.tolerance && h > d->options.shortest) {
+    *again = true;
+    motion->step = fmax(wanted_change(d) * h, d->options.shortest);
+    state_copy(d->model, state, &d->saved);
+    return STATUS_DIVERGED;
+  }
+  accept(d, &end, h, state, motion, energy);
+  motion->step = following_step(d, motion, h);
+  *load = end;
+  return STATUS_OK;
+}
+
+enum status dynamics_advance(struct dynamics *d, const struct dynamics_drive *drive, double until,
+                             struct fe_load *load, struct fe_state *state, struct motion *motion,
+                             struct energy *energy, enum status *reason) {
+  *reason = STATUS_OK;
+  for (int k = 0; k < ATTEMPTS; k++) {
+    bool again;
+    double h = next_step(d, motion, until);
+    enum status status = attempt(d, drive, h, load, state, motion, energy, &again);
+    if (status == STATUS_OK && drive && drive->visit) {
+      status = drive->visit(drive->context, motion, state, load);
+    }
+    if (!again) {
+      return status;
+    }
+    d->statistics.rejected++;
+    *reason = status;
+    if (motion->step < d->options.shortest) {
+      break;
+    }
+  }
+  return STATUS_STEP_MINIMUM;
+}
+
+/* Residual at the state with viscous forces by its velocity, but without inertia. */
+static enum status unbalanced(struct dynamics *d, const struct fe_load *load,
+                              const struct fe_state *state, struct motion *motion) {
+  struct fe_model *m = d->model;
+  double instant = 1e-4 * motion->step;
+  struct fe_load now = {load->pressure, load->pressure, load->dead};
+  for (int i = 0; i < 3 * m->mesh->node_count; i++) {
+    d->work[i] = state->u[i] - instant * motion->velocity[i];
+  }
+  inertia_set_viscosity(d->inertia, m, d->options.viscosity / instant, 1, d->work, 0, NULL);
+  d->inertia->stiffness = 0;
+  memset(d->inertia->offset, 0, 3 * (size_t)m->mesh->node_count * sizeof *d->inertia->offset);
+  model_use_multipliers(m, state);
+  m->inertia = d->inertia;
+  enum status status = model_evaluate(m, state, &now, true);
+  m->inertia = NULL;
+  motion->kinetic = inertia_kinetic(d->inertia, motion->velocity);
+  motion->power = energy_viscous_power(m, d->inertia, state, d->options.viscosity) +
+                  2 * d->options.drag * motion->kinetic;
+  return status;
+}
+
+enum status dynamics_balance(struct dynamics *d, const struct fe_load *load,
+                             const struct fe_state *state, struct motion *motion) {
+  struct fe_model *m = d->model;
+  enum status status = unbalanced(d, load, state, motion);
+  if (status != STATUS_OK) {
+    return status;
+  }
+  d->inertia->stiffness = 1;
+  inertia_only(d->inertia, m);
+  model_factor(m);
+  model_solve(m, m->residual, d->solver->step);
+  for (int i = 0; i < 3 * m->mesh->node_count; i++) {
+    double force = m->equation[i] >= 0 ? -d->solver->step[m->equation[i]] : 0;
+    motion->balanced[i] = force - d->options.drag * motion->velocity[i];
+    motion->acceleration[i] = motion->balanced[i];
+  }
+  d->solver->factor_fits = false;
+  return STATUS_OK;
+}

@@ -1,0 +1,100 @@
+#include "solver/fe/energy.h"
+
+/* Strain energy of element e. */
+static double element_energy(const struct fe_model *m, const struct fe_state *state, int e) {
+  const struct element_geometry *g = &m->geometry[e];
+  const double *p = state->p + (size_t)ELEMENT_PRESSURES * (size_t)e;
+  double u[3][HEX27_STRIDE], sum = 0;
+  model_gather(m, state->u, e, u);
+  for (int q = 0; q < HEX27_POINTS; q++) {
+    struct kinematics k;
+    double stress[9], pressure = 0;
+    element_gradient(g, q, u, k.f);
+    kinematics_complete(&k);
+    for (int n = 0; n < ELEMENT_PRESSURES; n++) {
+      pressure += p[n] * g->phi[n][q];
+    }
+    double density = hyperelastic_isochoric(&m->material, &k, stress, NULL);
+    density += pressure * (k.j - 1 - 0.5 * pressure / m->bulk_modulus);
+    sum += g->weight[q] * density;
+  }
+  return sum;
+}
+
+double energy_strain(const struct fe_model *m, const struct fe_state *state) {
+  double sum = 0;
+  for (int e = 0; e < m->mesh->element_count; e++) {
+    sum += element_energy(m, state, e);
+  }
+  return sum;
+}
+
+/* int |S|^2 dV of element e. */
+static double square_stress(const struct fe_model *m, const struct fe_state *state, int e,
+                            const struct element_viscosity *viscosity) {
+  double u[3][HEX27_STRIDE], sum = 0;
+  model_gather(m, state->u, e, u);
+  for (int q = 0; q < HEX27_POINTS; q++) {
+    double f[9];
+    int row = 0;
+    element_gradient(&m->geometry[e], q, u, f);
+    for (int j = 0; j < 3; j++) {
+      for (int l = j; l < 3; l++, row++) {
+        double c = f[j] * f[l] + f[3 + j] * f[3 + l] + f[6 + j] * f[6 + l];
+        double stress = viscosity->stiffness * (c - viscosity->history[row][q]);
+        sum += m->geometry[e].weight[q] * (j == l ? 1 : 2) * stress * stress;
+      }
+    }
+  }
+  return sum;
+}
+
+double energy_viscous_power(const struct fe_model *m, const struct inertia *inertia,
+                            const struct fe_state *state, double viscosity) {
+  double sum = 0;
+  for (int e = 0; viscosity > 0 && e < m->mesh->element_count; e++) {
+    const struct element_viscosity *v = inertia_viscosity(inertia, e);
+    sum += v ? square_stress(m, state, e, v) : 0;
+  }
+  return viscosity > 0 ? sum / (2 * viscosity) : 0;
+}
+
+/* Work of the whole dead load on the way to the state. */
+static double dead_work(const struct fe_model *m, const struct fe_state *state) {
+  double sum = 0;
+  for (int d = 0; d < 3 * m->mesh->node_count; d++) {
+    sum += m->dead_load[d] * state->u[d];
+  }
+  return sum;
+}
+
+static void keep(struct energy *energy, const struct fe_model *m, const struct fe_state *state,
+                 const struct fe_load *load) {
+  energy->pressure = load->pressure;
+  energy->volume = model_volume(m, state, NULL);
+  energy->dead = load->dead;
+  energy->lift = dead_work(m, state);
+  energy->strain = energy_strain(m, state);
+}
+
+void energy_start(struct energy *energy, const struct fe_model *m, const struct fe_state *state,
+                  const struct fe_load *load, double kinetic) {
+  *energy = (struct energy){.kinetic = kinetic};
+  keep(energy, m, state, load);
+  energy->start = energy->strain + kinetic;
+}
+
+void energy_record(struct energy *energy, const struct fe_model *m, const struct fe_state *state,
+                   const struct fe_load *load, const struct energy_step *step) {
+  struct energy last = *energy;
+  keep(energy, m, state, load);
+  energy->kinetic = step->kinetic;
+  energy->damping += step->damping;
+  energy->friction += step->friction;
+  energy->obstacle_work += step->obstacle_work;
+  energy->pressure_work += 0.5 * (last.pressure + load->pressure) * (energy->volume - last.volume);
+  energy->weight_work += 0.5 * (last.dead + load->dead) * (energy->lift - last.lift);
+  double work = energy->pressure_work + energy->weight_work + energy->obstacle_work;
+  double stored = energy->strain + energy->kinetic - energy->start;
+  energy->remainder = work - stored - energy->damping - energy->friction;
+}
