@@ -49,15 +49,15 @@ struct fe_model {
   double *element_value; /* packed tangents */
   double *contact_value; /* packed tangents */
   const double **clique_value;
-  struct inertia *inertia; /* adds to residual and tangent while a step in time is solved, else
-                            * NULL; borrowed */
-  bool use_contact;        /* of the surface with itself */
-  bool pattern_stale;      /* the pairs of the contact are not those of the analysis */
+  bool use_contact;   /* of the surface with itself */
+  bool pattern_stale; /* the pairs of the contact are not those of the analysis */
   struct contact contact;
   struct ldlt *ldlt;
-  struct ldlt *spare;            /* the analysis of another model, or NULL */
+  struct ldlt *spare; /* the analysis of another model, or NULL */
   struct ldlt_statistics factor; /* of the last analysis */
   struct fe_statistics statistics;
+  /* Adds to residual and tangent while a step in time is solved, else NULL; borrowed. */
+  struct inertia *inertia;
 };
 
 /* Prepares a model of `mesh`, which must outlive it. use_contact makes the outer surface touch

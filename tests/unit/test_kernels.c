@@ -25,6 +25,7 @@ struct element_case {
   struct hex27_tables tables;
   struct element_geometry geometry;
   double x[HEX27_NODES][3], u[3][HEX27_STRIDE], p[ELEMENT_PRESSURES];
+  struct element_viscosity viscosity;
 };
 
 static void element_open(struct element_case *c) {
@@ -41,6 +42,9 @@ static void element_open(struct element_case *c) {
   for (int m = 0; m < ELEMENT_PRESSURES; m++) {
     c->p[m] = uniform(&seed);
   }
+  for (int n = 0; n < 6 * HEX27_POINTS; n++) {
+    c->viscosity.history[n / HEX27_POINTS][n % HEX27_POINTS] = uniform(&seed);
+  }
   ck_assert_double_gt(element_geometry_fill(&c->tables, c->x, &c->geometry), 0);
 }
 
@@ -50,6 +54,31 @@ struct plain {
   double rp[ELEMENT_PRESSURES], c[ELEMENT_PRESSURES][ELEMENT_DOFS];
 };
 
+/* Adds F S and its derivative by F, S = stiffness (F^T F - history). */
+static void add_viscous(const struct element_viscosity *viscosity, int q, const double f[9],
+                        double stress[9], double tangent[81]) {
+  static const int row_of[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+  double s[9];
+  for (int n = 0; n < 9; n++) {
+    double c = -viscosity->history[row_of[n]][q];
+    for (int i = 0; i < 3; i++) {
+      c += f[3 * i + n / 3] * f[3 * i + n % 3];
+    }
+    s[n] = viscosity->stiffness * c;
+  }
+  for (int n = 0; n < 27; n++) {
+    int i = n / 9, j = n / 3 % 3, k = n % 3;
+    stress[3 * i + j] += f[3 * i + k] * s[3 * k + j];
+    tangent[9 * (3 * i + j) + 3 * i + k] += s[3 * k + j];
+    for (int o = 0; o < 9; o++) { /* by F_ol: dC_kj = d_lk F_oj + F_ok d_lj */
+      double *to = tangent + 9 * (3 * i + j) + 3 * (o / 3);
+      double rate = viscosity->stiffness * f[3 * i + k];
+      to[o % 3] += o % 3 == k ? rate * f[3 * (o / 3) + j] : 0;
+      to[o % 3] += o % 3 == j ? rate * f[3 * (o / 3) + k] : 0;
+    }
+  }
+}
+
 static void add_point(const struct element_case *c, const struct material_spec *material, int q,
                       struct plain *s) {
   struct kinematics k;
@@ -58,6 +87,7 @@ static void add_point(const struct element_case *c, const struct material_spec *
   element_gradient(&c->geometry, q, (double(*)[HEX27_STRIDE])c->u, k.f);
   kinematics_complete(&k);
   hyperelastic_isochoric(material, &k, stress, tangent);
+  add_viscous(&c->viscosity, q, k.f, stress, tangent);
   for (int m = 0; m < ELEMENT_PRESSURES; m++) {
     pressure += c->p[m] * c->geometry.phi[m][q];
   }
@@ -123,20 +153,29 @@ static void compare(const struct plain *s, const struct element_internal *intern
 START_TEST(element_is_the_sum_over_its_points) {
   static struct element_case c;
   static struct plain s;
-  int set = _i / VERIFY_MATERIALS;
+  int set = _i / VERIFY_MATERIALS % SETS;
+  bool damped = _i >= SETS * VERIFY_MATERIALS;
   const struct material_spec *material = &verify_materials[_i % VERIFY_MATERIALS];
   if (lanes_width() < width_of[set]) {
     return;
   }
   element_open(&c);
+  c.viscosity.stiffness = damped ? 0.3 : 0;
   memset(&s, 0, sizeof s);
   for (int q = 0; q < HEX27_POINTS; q++) {
     add_point(&c, material, q, &s);
   }
   double residual[ELEMENT_DOFS], alone[ELEMENT_DOFS], packed[ELEMENT_PACKED + 1];
   struct element_internal internal;
-  struct element_arguments a = {&c.geometry, material, bulk_modulus, c.u,
-                                c.p,         residual, packed,       &internal};
+  struct element_arguments a = {.geometry = &c.geometry,
+                                .material = material,
+                                .bulk_modulus = bulk_modulus,
+                                .viscosity = damped ? &c.viscosity : NULL,
+                                .u = c.u,
+                                .p = c.p,
+                                .residual = residual,
+                                .packed = packed,
+                                .internal = &internal};
   packed[ELEMENT_PACKED] = 123;
   ck_assert(evaluate(set, &a));
   compare(&s, &internal, residual, packed);
@@ -208,7 +247,7 @@ END_TEST
 int main(void) {
   Suite *suite = suite_create("kernels");
   TCase *element = tcase_create("element"), *front = tcase_create("front");
-  tcase_add_loop_test(element, element_is_the_sum_over_its_points, 0, SETS * VERIFY_MATERIALS);
+  tcase_add_loop_test(element, element_is_the_sum_over_its_points, 0, 2 * SETS * VERIFY_MATERIALS);
   tcase_add_loop_test(front, front_is_eliminated, 0, 5);
   suite_add_tcase(suite, element);
   suite_add_tcase(suite, front);
