@@ -11,8 +11,7 @@
 static const double xi_limit_facing = 1.6;
 static const double xi_limit = 1.05;
 
-/* The smoothed law of x = g - lambda/eps: traction and its negative derivative. */
-static double contact_law(double eps, double delta, double x, double *slope) {
+double contact_law(double eps, double delta, double x, double *slope) {
   if (x >= delta) {
     *slope = 0;
     return 0;

@@ -4,6 +4,9 @@
 
 #include "solver/fe/contact.h"
 
+/* The smoothed law of x = g - lambda/eps: traction and its negative derivative. */
+double contact_law(double eps, double delta, double x, double *slope);
+
 /* Traction of a point at its gap, with its gain, and the negative derivative to the gap. */
 double contact_traction(const struct contact *contact, const struct contact_point *point,
                         double *slope);

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 #include "solver/base/clock.h"
+#include "solver/fe/obstacle_internal.h"
 
 enum {
   STALL_ITERATIONS = 5, /* give up after so many without a smaller correction */
@@ -16,6 +17,8 @@ enum {
 /* Overlap, in thicknesses of the thinnest wall, that is put up with when multipliers do not settle:
  * anyway, and while the body rests. */
 static const double little_overlap = 0.002, most_overlap = 0.015;
+/* Change of the forces of rigid objects that is put up with when they do not settle. */
+static const double unsettled_forces = 0.02;
 /* Movement of a body at rest, in step tolerances. */
 static const double still_moves = 30;
 
@@ -108,9 +111,10 @@ enum status equilibrium_check_limits(const struct equilibrium *s) {
 
 /* Residual at a trial state reached by a correction of at most `most`. When that is far the
  * partners of the contact are found anew: a part of the body that has passed into another, where
- * no closest point pushes it back, makes the trial as useless as an inverted element. */
+ * no closest point pushes it back, makes the trial as useless as an inverted element; so does one
+ * that lies deeper in a rigid object than `allowed`. */
 static enum status evaluate_trial(struct equilibrium *s, struct fe_load *load,
-                                  const struct fe_state *state, double most) {
+                                  const struct fe_state *state, double most, double allowed) {
   struct fe_model *m = s->model;
   if (m->use_contact && most > 0.25 * m->contact.reach) {
     enum status status = model_search_contact(m, state);
@@ -121,7 +125,8 @@ static enum status evaluate_trial(struct equilibrium *s, struct fe_load *load,
       return STATUS_CONTACT;
     }
   }
-  return model_evaluate(m, state, load, false);
+  enum status status = model_evaluate(m, state, load, false);
+  return status == STATUS_OK && obstacles_intrusion(m) > allowed ? STATUS_CONTACT : status;
 }
 
 /* Applies the Newton step, of largest entry `most`, and `change` to the load parameter, shortened
@@ -131,13 +136,14 @@ static enum status take_step(struct equilibrium *s, struct fe_load *load, double
                              struct fe_state *state, double most, double *share) {
   struct fe_model *m = s->model;
   double *trial = s->chord, start = *load_parameter(s, load);
+  double allowed = fmax(0.5 * m->contact.reach, 1.01 * obstacles_intrusion(m));
   enum status status = STATUS_OK;
   state_copy(m, &s->saved, state);
   for (int attempt = 0; attempt < BACKTRACKS; attempt++) {
     memcpy(trial, s->step, sizeof *trial * (size_t)m->dof_count);
     apply(s, state, trial, *share);
     *load_parameter(s, load) = start + *share * change;
-    status = evaluate_trial(s, load, state, *share * most);
+    status = evaluate_trial(s, load, state, *share * most, allowed);
     if (status == STATUS_OK) {
       return STATUS_OK;
     }
@@ -285,7 +291,7 @@ static enum status meet(struct equilibrium *s, struct fe_load *load, struct fe_s
 }
 
 static bool touches(const struct fe_model *m) {
-  return m->use_contact || m->contact.plane_count > 0;
+  return m->use_contact || m->contact.plane_count > 0 || m->obstacle_count > 0;
 }
 
 /* Brings the state back into equilibrium after an update of the multipliers. */
@@ -315,20 +321,24 @@ static bool settled(const struct equilibrium *s, double change, int updates) {
 static enum status augment(struct equilibrium *s, struct fe_load *load, struct fe_state *state,
                            int *iterations) {
   struct fe_model *m = s->model;
-  double relaxation = 0, change = INFINITY;
+  double relaxation = 0, rubbing = 0, change = INFINITY, shift = 0;
   s->moved = INFINITY;
   for (int k = 0; k < AUGMENTATIONS; k++) {
     enum status status = meet(s, load, state);
+    if (status == STATUS_OK && m->obstacle_count > 0) {
+      status = obstacles_update(m, state->u, &rubbing, &shift);
+    }
     if (status != STATUS_OK) {
       return status;
     }
     change = contact_update_multipliers(&m->contact, &relaxation);
     if (s->verbose) {
       struct contact_summary c = contact_summarise(&m->contact);
-      fprintf(stderr, "    augmentation %d: change %.3e Pa, overlap %.3e m, moved %.3e m\n", k,
-              change, c.penetration, s->moved);
+      fprintf(stderr,
+              "    augmentation %d: change %.3e Pa, overlap %.3e m, moved %.3e m, objects %.3e\n",
+              k, change, c.penetration, s->moved, shift);
     }
-    if (settled(s, change, k)) {
+    if (settled(s, change, k) && shift < s->options.force_tolerance) {
       return STATUS_OK;
     }
     s->moved = 0;
@@ -342,7 +352,7 @@ static enum status augment(struct equilibrium *s, struct fe_load *load, struct f
   bool still = s->moved < still_moves * s->options.step_tolerance;
   bool good = change < s->options.traction_tolerance || overlap < little_overlap * wall ||
               (still && overlap < most_overlap * wall);
-  return good ? STATUS_OK : STATUS_CONTACT;
+  return good && shift < unsettled_forces ? STATUS_OK : STATUS_CONTACT;
 }
 
 /* Multipliers to start from: those of the state, carried on at the rate of the last step. */
@@ -352,6 +362,7 @@ static void start_multipliers(struct equilibrium *s, const struct fe_state *stat
     double change = state->lambda[i] > 0 ? ratio * s->lambda_step[i] : 0;
     contact->point[i].lambda = fmax(0, state->lambda[i] + change);
   }
+  obstacles_use(s->model, state);
 }
 
 /* The state takes over the multipliers of the contact. */
@@ -361,6 +372,7 @@ static void keep_multipliers(struct equilibrium *s, struct fe_state *state) {
     s->lambda_step[i] = contact->point[i].lambda - state->lambda[i];
     state->lambda[i] = contact->point[i].lambda;
   }
+  obstacles_keep(s->model, state);
 }
 
 enum status equilibrium_solve(struct equilibrium *s, const struct fe_load *target,

@@ -11,7 +11,8 @@ struct equilibrium_options {
   double longest_step;       /* largest nodal increment of one iteration, m */
   double step_tolerance;     /* root mean square of the last correction, m */
   double traction_tolerance; /* largest change of a contact multiplier at the end, Pa */
-  double overlap_tolerance;  /* put up with where single tractions do not settle, m; 0: none */
+  double force_tolerance; /* change of the forces of rigid objects at the end, as a part of them */
+  double overlap_tolerance; /* put up with where single tractions do not settle, m; 0: none */
   int max_iterations;
   double deadline_s;                /* on clock_wall_s; 0: none */
   bool (*cancelled)(void *context); /* may be NULL */

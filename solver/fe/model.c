@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include "solver/fe/obstacle_internal.h"
 #include "solver/fe/vec3.h"
 
 static enum status fill_geometry(struct fe_model *m, struct error *error) {
@@ -198,6 +199,7 @@ void model_destroy(struct fe_model *m) {
     return;
   }
   contact_release(&m->contact);
+  obstacles_release(m);
   ldlt_destroy(m->ldlt);
   ldlt_destroy(m->spare);
   free(m->geometry);
@@ -266,7 +268,9 @@ enum status state_create(const struct fe_model *m, struct fe_state *state) {
   state->u = calloc(3 * (size_t)m->mesh->node_count, sizeof *state->u);
   state->p = calloc(ELEMENT_PRESSURES * (size_t)m->mesh->element_count, sizeof *state->p);
   state->lambda = calloc((size_t)m->contact.point_count + 1, sizeof *state->lambda);
-  if (!state->u || !state->p || !state->lambda) {
+  size_t memories = obstacles_memory_count(m);
+  state->memory = memories > 0 ? calloc(memories, sizeof *state->memory) : NULL;
+  if (!state->u || !state->p || !state->lambda || (memories > 0 && !state->memory)) {
     state_release(state);
     return STATUS_NO_MEMORY;
   }
@@ -277,6 +281,7 @@ void state_release(struct fe_state *state) {
   free(state->u);
   free(state->p);
   free(state->lambda);
+  free(state->memory);
   *state = (struct fe_state){0};
 }
 
@@ -284,12 +289,18 @@ void state_clear(const struct fe_model *m, struct fe_state *state) {
   memset(state->u, 0, sizeof *state->u * 3 * (size_t)m->mesh->node_count);
   memset(state->p, 0, sizeof *state->p * ELEMENT_PRESSURES * (size_t)m->mesh->element_count);
   memset(state->lambda, 0, sizeof *state->lambda * (size_t)m->contact.point_count);
+  for (size_t i = 0; i < obstacles_memory_count(m); i++) {
+    state->memory[i] = (struct obstacle_memory){.pressure = 0};
+  }
 }
 
 void state_copy(const struct fe_model *m, struct fe_state *to, const struct fe_state *from) {
   memcpy(to->u, from->u, sizeof *to->u * 3 * (size_t)m->mesh->node_count);
   memcpy(to->p, from->p, sizeof *to->p * ELEMENT_PRESSURES * (size_t)m->mesh->element_count);
   memcpy(to->lambda, from->lambda, sizeof *to->lambda * (size_t)m->contact.point_count);
+  if (m->obstacle_count > 0) {
+    memcpy(to->memory, from->memory, sizeof *to->memory * obstacles_memory_count(m));
+  }
 }
 
 void model_gather(const struct fe_model *m, const double *u, int element,

@@ -7,12 +7,18 @@
 #include "solver/fe/ldlt.h"
 
 struct inertia;
+struct obstacle;        /* solver/fe/obstacle.h */
+struct obstacle_memory; /* solver/fe/obstacle.h */
+
+enum { MODEL_OBSTACLES = 8 };
 
 /* Unknowns of one equilibrium state. */
 struct fe_state {
   double *u;      /* node_count x 3, m */
   double *p;      /* element_count x 4, Pa */
   double *lambda; /* contact multipliers, Pa */
+  /* Of rigid objects: obstacle_count x 9 x contact.face_count; NULL without one. */
+  struct obstacle_memory *memory;
 };
 
 struct fe_load {
@@ -52,8 +58,10 @@ struct fe_model {
   bool use_contact;   /* of the surface with itself */
   bool pattern_stale; /* the pairs of the contact are not those of the analysis */
   struct contact contact;
+  int obstacle_count;
+  struct obstacle *obstacle[MODEL_OBSTACLES]; /* rigid objects: solver/fe/obstacle.h */
   struct ldlt *ldlt;
-  struct ldlt *spare; /* the analysis of another model, or NULL */
+  struct ldlt *spare;            /* the analysis of another model, or NULL */
   struct ldlt_statistics factor; /* of the last analysis */
   struct fe_statistics statistics;
   /* Adds to residual and tangent while a step in time is solved, else NULL; borrowed. */
@@ -107,10 +115,11 @@ enum status model_evaluate(struct fe_model *model, const struct fe_state *state,
  * faces may touch. STATUS_NO_MEMORY. */
 enum status model_search_contact(struct fe_model *model, const struct fe_state *state);
 
-/* Gives the contact the multipliers of the state. */
+/* Gives the contact the multipliers of the state, and rigid objects its memory of them. */
 void model_use_multipliers(struct fe_model *model, const struct fe_state *state);
 
-/* Renews the gaps of the known pairs at the state, whether or not the model uses contact. */
+/* Renews the gaps of the known pairs and of rigid objects at the state, whether or not the model
+ * uses contact. */
 void model_update_gaps(struct fe_model *model, const struct fe_state *state);
 
 /* Factorises the last tangent; returns the number of negative pivots. */

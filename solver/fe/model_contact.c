@@ -1,5 +1,6 @@
 /* Contact in the residual and the tangent of a model. */
 #include "solver/fe/model_internal.h"
+#include "solver/fe/obstacle_internal.h"
 
 /* Nodes of a contact pair and their current positions. */
 static void pair_positions(const struct fe_model *m, const double *u, int pair,
@@ -126,6 +127,7 @@ enum status model_evaluate_contact(struct fe_model *m, const double *u, bool tan
   for (int k = 0; k < m->contact.plane_count; k++) {
     evaluate_plane(m, u, k, tangent);
   }
+  model_evaluate_obstacles(m, u, tangent);
   return STATUS_OK;
 }
 
@@ -133,6 +135,7 @@ void model_use_multipliers(struct fe_model *m, const struct fe_state *state) {
   for (int i = 0; i < m->contact.point_count; i++) {
     m->contact.point[i].lambda = state->lambda[i];
   }
+  obstacles_use(m, state);
 }
 
 void model_update_gaps(struct fe_model *m, const struct fe_state *state) {
@@ -150,4 +153,5 @@ void model_update_gaps(struct fe_model *m, const struct fe_state *state) {
       }
     }
   }
+  obstacles_look(m, state->u);
 }

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include "solver/fe/obstacle.h"
 
 /* Step control. */
 static const double cut_factor = 0.4;
@@ -40,6 +41,7 @@ enum status walk_advance(struct walk *w, const struct stage *stage, double targe
   enum status status = equilibrium_solve(w->solver, &load, previous, &w->trial, iterations);
   w->iterations += *iterations;
   if (status == STATUS_OK) {
+    model_commit_obstacles(m, &w->trial);
     state_copy(m, w->state, &w->trial);
     w->value = target;
   }

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "solver/fe/obstacle.h"
 #include "solver/fe/path_internal.h"
 
 enum {
@@ -78,7 +79,8 @@ static enum status try_step(struct arc *a, struct fe_load *load, int *iterations
 /* Takes over the trial state. */
 static void accept(struct arc *a, double value, int iterations) {
   struct walk *w = a->walk;
-  const struct fe_model *m = w->solver->model;
+  struct fe_model *m = w->solver->model;
+  model_commit_obstacles(m, &w->trial);
   for (int d = 0; d < 3 * m->mesh->node_count; d++) {
     if (m->equation[d] >= 0) {
       a->last[m->equation[d]] = w->trial.u[d] - a->state.u[d];
@@ -96,6 +98,7 @@ static void accept(struct arc *a, double value, int iterations) {
 
 /* Takes the trial state, in equilibrium with `value`, as the state of the walk. */
 static void arrive(struct walk *w, double value) {
+  model_commit_obstacles(w->solver->model, &w->trial);
   state_copy(w->solver->model, w->state, &w->trial);
   w->value = value;
   w->limit = 0;
