@@ -8,7 +8,8 @@ build_packages=(
   libnlopt-dev libudunits2-dev libmd-dev libseccomp-dev check fonts-dejavu-core curl jq python3-yaml sqlite3
 )
 test_packages=(chromium calculix-ccx python3 procps openssl mandoc
-  libmumps-seq-dev)
+  libmumps-seq-dev
+  munge slurmctld slurmd slurm-client slurm-wlm-basic-plugins)
 # An npm from elsewhere comes with a Node.js that conflicts with those of Debian.
 command -v npm >/dev/null || build_packages+=(nodejs npm)
 
