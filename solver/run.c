@@ -7,6 +7,7 @@
 #include "solver/bistable/result.h"
 #include "solver/estimate.h"
 #include "solver/fe/warm.h"
+#include "solver/grasp/grasp_job.h"
 #include "solver/identify/identify_job.h"
 #include "solver/material/curve_job.h"
 #include "solver/material/fit_job.h"
@@ -211,7 +212,9 @@ static enum status run_other(const struct job_spec *spec, const struct run_optio
     return result_hlpv(spec, &hlpv, document, ending, error);
   }
   if (spec->kind == JOB_GRASP) {
-    return error_set(error, STATUS_INVALID, "/kind", "grasps are not solved by this version");
+    struct grasp_options grasp = {options->out_dir, options->events, options->verbose,
+                                  options->cancelled};
+    return grasp_job(spec, &grasp, document, ending, error);
   }
   if (spec->kind == JOB_SNAP) {
     struct result_snap_options snap = {options->events, options->cancelled};

@@ -9,8 +9,8 @@ enum status solve_prepare(const struct job_spec *spec, struct solve *solve, stru
   return solve_prepare_with(spec, NULL, solve, error);
 }
 
-enum status solve_prepare_with(const struct job_spec *spec, struct ldlt *spare, struct solve *solve,
-                               struct error *error) {
+enum status solve_prepare_model(const struct job_spec *spec, struct ldlt *spare,
+                                struct solve *solve, struct error *error) {
   enum status status =
       model_create_with(&solve->mesh, &spec->material, spec->contact, spare, &solve->model, error);
   if (status != STATUS_OK) {
@@ -29,7 +29,12 @@ enum status solve_prepare_with(const struct job_spec *spec, struct ldlt *spare, 
       return error_set(error, status, "/planes", "plane %d: %s", k, behind.message);
     }
   }
-  status = equilibrium_create(solve->model, &solve->solver, error);
+  return STATUS_OK;
+}
+
+enum status solve_prepare_solver(const struct job_spec *spec, struct solve *solve,
+                                 struct error *error) {
+  enum status status = equilibrium_create(solve->model, &solve->solver, error);
   if (status != STATUS_OK) {
     return status;
   }
@@ -39,6 +44,12 @@ enum status solve_prepare_with(const struct job_spec *spec, struct ldlt *spare, 
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the state");
   }
   return STATUS_OK;
+}
+
+enum status solve_prepare_with(const struct job_spec *spec, struct ldlt *spare, struct solve *solve,
+                               struct error *error) {
+  enum status status = solve_prepare_model(spec, spare, solve, error);
+  return status == STATUS_OK ? solve_prepare_solver(spec, solve, error) : status;
 }
 
 void solve_release(struct solve *solve) {

@@ -21,6 +21,12 @@ enum status solve_prepare(const struct job_spec *spec, struct solve *solve, stru
 enum status solve_prepare_with(const struct job_spec *spec, struct ldlt *spare, struct solve *solve,
                                struct error *error);
 
+/* The same in two parts, between which objects can be added: the model, then solver and state. */
+enum status solve_prepare_model(const struct job_spec *spec, struct ldlt *spare,
+                                struct solve *solve, struct error *error);
+enum status solve_prepare_solver(const struct job_spec *spec, struct solve *solve,
+                                 struct error *error);
+
 /* Releases everything, the mesh too, and clears it. */
 void solve_release(struct solve *solve);
 

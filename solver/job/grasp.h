@@ -34,7 +34,8 @@ struct grasp_shape {
   double size[3];                       /* of a box */
   double rounding;                      /* radius of rims and edges, 0: sharp */
   int profile_count;                    /* of a body of revolution */
-  double profile[GRASP_PROFILE_MAX][2]; /* z and radius, z rising */
+  double profile[GRASP_PROFILE_MAX][2]; /* z and radius */
+  bool smooth;                          /* a smooth curve through its points, else straight lines */
   unsigned char *stl; /* content of a file, stl_size bytes; NULL but for surfaces */
   size_t stl_size;
   double stl_unit; /* one unit of its coordinates */

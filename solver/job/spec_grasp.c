@@ -4,6 +4,7 @@
 
 #include "solver/base/base64.h"
 #include "solver/job/grasp.h"
+#include "solver/job/grasp_shape.h"
 #include "solver/job/reader.h"
 
 static bool has_word(const json_t *object, const char *key, const char *word) {
@@ -43,49 +44,16 @@ static enum status read_direction(const struct reader *reader, const json_t *val
 
 /* ---- shape -------------------------------------------------------------------------------- */
 
-static enum status read_rounding(const struct reader *reader, const json_t *value, const char *key,
-                                 double most, struct grasp_shape *shape) {
-  char pointer[40];
-  snprintf(pointer, sizeof pointer, "/object/shape/%s", key);
-  shape->rounding = reader_member(reader, value, key, "mm", 0.0);
-  if (shape->rounding <= most * (1 + 1e-12)) {
-    return STATUS_OK;
-  }
-  return error_set(reader->error, STATUS_GEOMETRY, pointer,
-                   "a radius of %.6g mm does not fit the body\nat most %.6g mm",
-                   1e3 * shape->rounding, 1e3 * most);
-}
-
-static enum status read_profile(const struct reader *reader, const json_t *value,
-                                struct grasp_shape *shape) {
+static void read_profile(const struct reader *reader, const json_t *value,
+                         struct grasp_shape *shape) {
   size_t index;
   const json_t *point;
-  double widest = 0;
+  shape->smooth = has_word(value, "curve", "smooth");
   json_array_foreach(json_object_get(value, "profile"), index, point) {
     double *p = shape->profile[shape->profile_count++];
-    char pointer[60];
-    snprintf(pointer, sizeof pointer, "/object/shape/profile/%zu", index);
     p[0] = reader_quantity(reader, json_array_get(point, 0), "mm");
     p[1] = reader_quantity(reader, json_array_get(point, 1), "mm");
-    widest = fmax(widest, p[1]);
-    if (index > 0 && !(p[0] > shape->profile[index - 1][0])) {
-      return error_set(reader->error, STATUS_INVALID, pointer,
-                       "z = %.6g mm is not above the %.6g mm of the point before\nz must rise from "
-                       "point to point",
-                       1e3 * p[0], 1e3 * shape->profile[index - 1][0]);
-    }
-    if (p[1] < 0) {
-      return error_set(reader->error, STATUS_INVALID, pointer,
-                       "the radius %.6g mm is negative\n0 or more", 1e3 * p[1]);
-    }
   }
-  if (widest == 0) {
-    return error_set(reader->error, STATUS_GEOMETRY, "/object/shape/profile",
-                     "every radius is 0\nat least one above it");
-  }
-  return read_rounding(reader, value, "rim",
-                       0.5 * (shape->profile[shape->profile_count - 1][0] - shape->profile[0][0]),
-                       shape);
 }
 
 static enum status read_stl(const struct reader *reader, const json_t *value,
@@ -109,47 +77,31 @@ static enum status read_stl(const struct reader *reader, const json_t *value,
   return STATUS_OK;
 }
 
-static enum status read_box(const struct reader *reader, const json_t *value,
-                            struct grasp_shape *shape) {
-  double least = INFINITY;
-  read_vector(reader, json_object_get(value, "size"), shape->size);
-  for (int i = 0; i < 3; i++) {
-    least = fmin(least, shape->size[i]);
-  }
-  return read_rounding(reader, value, "edge", 0.5 * least, shape);
-}
-
+/* Reads the shape, and makes it once, to see whether it can be made. */
 static enum status read_shape(const struct reader *reader, const json_t *value,
                               struct grasp_shape *shape) {
   static const char *const forms[] = {
-      [GRASP_SPHERE] = "sphere",  [GRASP_CYLINDER] = "cylinder",     [GRASP_FRUSTUM] = "frustum",
-      [GRASP_BOX] = "box",        [GRASP_REVOLUTION] = "revolution", [GRASP_PLANE] = "plane",
+      [GRASP_SPHERE] = "sphere",  [GRASP_CYLINDER] = "cylinder", [GRASP_FRUSTUM] = "frustum",
+      [GRASP_BOX] = "box",        [GRASP_PLANE] = "plane",       [GRASP_REVOLUTION] = "revolution",
       [GRASP_SURFACE] = "surface"};
   for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
     shape->form = has_word(value, "form", forms[i]) ? (enum grasp_form)i : shape->form;
   }
+  const char *rounding = shape->form == GRASP_BOX ? "edge" : "rim";
   shape->diameter = reader_member(reader, value, "diameter", "mm", 0.0);
   shape->length = reader_member(reader, value, "length", "mm", 0.0);
   shape->base_diameter = reader_member(reader, value, "base_diameter", "mm", 0.0);
   shape->tip_diameter = reader_member(reader, value, "tip_diameter", "mm", 0.0);
-  switch (shape->form) {
-  case GRASP_CYLINDER:
-    return read_rounding(reader, value, "rim", 0.5 * fmin(shape->diameter, shape->length), shape);
-  case GRASP_FRUSTUM:
-    return read_rounding(reader, value, "rim",
-                         0.5 * fmin(shape->length, fmin(shape->base_diameter, shape->tip_diameter)),
-                         shape);
-  case GRASP_BOX:
-    return read_box(reader, value, shape);
-  case GRASP_REVOLUTION:
-    return read_profile(reader, value, shape);
-  case GRASP_SURFACE:
-    return read_stl(reader, value, shape);
-  case GRASP_SPHERE:
-  case GRASP_PLANE:
-    break;
+  shape->rounding = reader_member(reader, value, rounding, "mm", 0.0);
+  read_vector(reader, json_object_get(value, "size"), shape->size);
+  read_profile(reader, value, shape);
+  enum status status = shape->form == GRASP_SURFACE ? read_stl(reader, value, shape) : STATUS_OK;
+  struct rigid_shape *made = NULL;
+  if (status == STATUS_OK) {
+    status = grasp_shape_create(shape, &made, reader->error);
   }
-  return STATUS_OK;
+  rigid_shape_destroy(made);
+  return status;
 }
 
 /* ---- object ------------------------------------------------------------------------------- */

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Includes only point downwards: base < job, explore, rigid < mesh < fe, hlpv, axi < post, verify, material, identify, snap, bistable < run,
-# study within the solver; the server uses of the solver only base, job and explore; the solver never sees the server.
+# grasp, study within the solver; the server uses of the solver only base, job and explore; the solver never sees the server.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 rank() {
@@ -12,7 +12,7 @@ rank() {
   solver/mesh/*) echo 3 ;;
   solver/fe/* | solver/hlpv/* | solver/axi/*) echo 4 ;;
   solver/post/* | solver/verify/* | solver/material/* | solver/identify/* | solver/snap/* | solver/bistable/*) echo 5 ;;
-  solver/study/*) echo 6 ;;
+  solver/grasp/* | solver/study/*) echo 6 ;;
   solver/run.[ch] | solver/main.c | solver/bundle.[ch] | solver/answer.[ch] | solver/solve.[ch] | solver/estimate.[ch]) echo 6 ;;
   server/*) echo 7 ;;
   *) echo 0 ;;

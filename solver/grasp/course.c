@@ -1,0 +1,337 @@
+#include "solver/grasp/course.h"
+
+#include <math.h>
+#include <stdio.h>
+#include "solver/fe/vec3.h"
+#include "solver/job/grasp_shape.h"
+
+enum {
+  EASY_ITERATIONS = 8,
+  STEPS_MAX = 4000, /* of a stage */
+  JUMPS_MAX = 60    /* of a stage */
+};
+
+static const double cut_factor = 0.4, grow_factor = 1.6;
+/* Shortest step in equilibrium and length of what is tried in motion, in longest steps. */
+static const double shortest = 0.03, carried_step = 0.25;
+
+/* What the body and the object go through in one stage. */
+struct stage {
+  enum grasp_stage kind;
+  int records;
+  double full;    /* longest step, part of the stage */
+  double seconds; /* that it takes at its rate */
+};
+
+struct course {
+  struct finger *f;
+  const struct course_visit *visit;
+  struct course_report *report;
+  struct error *error;
+  struct stage stage;
+  double along;        /* of the last converged state */
+  double step;         /* part of the stage */
+  double shift;        /* of the object along the pull when the release begins, m */
+  double time;         /* s */
+  int steps, jumps;    /* of the stage */
+  double stages;       /* number of stages that have passed */
+  double moving;       /* of these in motion */
+  bool touched;        /* in the pull, and not free since */
+  enum status failure; /* of the last attempt */
+};
+
+/* ---- what a stage does -------------------------------------------------------------------- */
+
+static struct fe_load load_at(const struct course *c, double along) {
+  enum grasp_stage kind = c->stage.kind;
+  double to = c->f->spec.load.pressure_to;
+  double pressure = kind < STAGE_INFLATION    ? 0
+                    : kind == STAGE_INFLATION ? along * to
+                    : kind == STAGE_PULL      ? to
+                                              : (1 - along) * to;
+  double dead = !solve_has_gravity(&c->f->spec) ? 0 : kind == STAGE_GRAVITY ? along : 1;
+  return (struct fe_load){pressure, pressure, dead};
+}
+
+/* Shift of the object along the pull, m. */
+static double shift_at(const struct course *c, double along) {
+  return c->stage.kind == STAGE_PULL      ? along * c->f->grasp.pull.distance
+         : c->stage.kind == STAGE_RELEASE ? c->shift
+                                          : 0;
+}
+
+static void place_object(struct course *c, double along) {
+  const struct grasp_spec *g = &c->f->grasp;
+  double away = c->stage.kind == STAGE_GRAVITY    ? 1
+                : c->stage.kind == STAGE_APPROACH ? 1 - along
+                                                  : 0;
+  double shift[3];
+  for (int i = 0; i < 3; i++) {
+    shift[i] = away * g->approach.from[i] + shift_at(c, along) * g->pull.direction[i];
+  }
+  struct rigid_pose pose = grasp_pose(&g->object, shift);
+  model_place_obstacle(c->f->solve.model, c->f->obstacle, &pose);
+}
+
+/* ---- states ------------------------------------------------------------------------------- */
+
+static bool is_record(const struct course *c) {
+  double place = c->along * c->stage.records;
+  return fabs(place - round(place)) < 1e-9 * c->stage.records;
+}
+
+/* Takes the present state into the series. */
+static enum status take(struct course *c, bool dynamic) {
+  struct grasp_sample sample = {
+      .stage = c->stage.kind, .along = c->along, .dynamic = dynamic, .recorded = is_record(c)};
+  sample.value[GRASP_TIME] = c->time;
+  sample.value[GRASP_PRESSURE] = load_at(c, c->along).pressure;
+  sample.value[GRASP_SHIFT] = shift_at(c, c->along);
+  enum status status = finger_measure(c->f, &sample);
+  if (status == STATUS_OK) {
+    status = grasp_series_add(&c->report->series, &sample);
+  }
+  return status == STATUS_OK && c->visit->visit ? c->visit->visit(c->visit->context, c->f, &sample)
+                                                : status;
+}
+
+static bool final(enum status status) {
+  return status == STATUS_TIMEOUT || status == STATUS_CANCELLED || status == STATUS_NO_MEMORY ||
+         status == STATUS_IO;
+}
+
+/* Notes a step of the ledger that ended at rest. */
+static void record_energy(struct course *c, const struct fe_load *load) {
+  struct obstacle_state o = model_obstacle_state(c->f->solve.model, c->f->obstacle);
+  struct energy_step step = {.friction = o.friction_work, .obstacle_work = o.motion_work};
+  energy_record(&c->f->energy, c->f->solve.model, &c->f->solve.state, load, &step);
+}
+
+/* One step in equilibrium to `target`; on failure everything is as before. */
+static enum status rest_at(struct course *c, double target, int *iterations) {
+  struct finger *f = c->f;
+  struct fe_model *m = f->solve.model;
+  struct fe_load load = load_at(c, target);
+  double before = load_at(c, c->along).pressure;
+  place_object(c, target);
+  state_copy(m, &f->trial, &f->solve.state);
+  enum status status = equilibrium_solve(f->solve.solver, &load, before, &f->trial, iterations);
+  if (status == STATUS_OK && f->solve.solver->negative_pivots > 0) {
+    status = STATUS_UNSTABLE_PATH;
+  }
+  if (f->solve.solver->verbose) {
+    fprintf(stderr, "  %s %.5g: %s after %d factorisations\n", grasp_stage_word(c->stage.kind),
+            target, status_word(status), *iterations);
+  }
+  if (status != STATUS_OK) {
+    f->solve.solver->factor_fits = false;
+    model_reject_obstacles(m);
+    return status;
+  }
+  model_commit_obstacles(m, &f->trial);
+  state_copy(m, &f->solve.state, &f->trial);
+  record_energy(c, &load);
+  c->time += (target - c->along) * c->stage.seconds;
+  c->stages += target - c->along;
+  c->along = target;
+  return STATUS_OK;
+}
+
+/* ---- jumps -------------------------------------------------------------------------------- */
+
+/* What a carrying drives: the stage goes on at its rate up to `target`. */
+struct drive {
+  struct course *c;
+  double start; /* of the motion's time, s */
+  double target;
+};
+
+static double driven_along(const struct drive *d, double time) {
+  double seconds = d->c->stage.seconds;
+  return fmin(d->target, d->c->along + (time - d->start) / seconds);
+}
+
+static enum status drive(void *context, double time, struct fe_load *load) {
+  struct drive *d = context;
+  double along = driven_along(d, time);
+  *load = load_at(d->c, along);
+  place_object(d->c, along);
+  return STATUS_OK;
+}
+
+/* Follows the motion to `target` and on until the body rests. */
+static enum status carry_to(struct course *c, double target) {
+  struct finger *f = c->f;
+  struct drive driven = {c, f->motion.time, target};
+  struct carry_options options = carry_defaults(f->dynamics);
+  struct carry_report report;
+  double seconds = (target - c->along) * c->stage.seconds, start = f->motion.time;
+  struct fe_load load = load_at(c, c->along);
+  options.drive = (struct dynamics_drive){.drive = drive, .context = &driven};
+  options.driven = seconds;
+  options.longest += seconds;
+  motion_clear(f->solve.model, &f->motion);
+  f->motion.time = start;
+  f->motion.step = 0;
+  enum status status = dynamics_carry(f->dynamics, &options, &load, &f->solve.state, &f->motion,
+                                      &f->energy, &report, c->error);
+  if (f->solve.solver->verbose) {
+    fprintf(stderr, "  %s %.5g in motion: %s, %d steps, %.4g s, %s\n",
+            grasp_stage_word(c->stage.kind), target, status_word(status), report.steps, report.time,
+            report.rested ? "rests" : "moves");
+  }
+  c->jumps++;
+  c->report->carried++;
+  c->moving += target - c->along;
+  c->stages += target - c->along;
+  c->time += report.time;
+  c->along = target;
+  f->solve.solver->factor_fits = false;
+  return status;
+}
+
+/* ---- stages ------------------------------------------------------------------------------- */
+
+/* Whether the pull is over because the object has come free, and far enough away. */
+static bool is_free(struct course *c) {
+  if (c->stage.kind != STAGE_PULL) {
+    return false;
+  }
+  const struct grasp_series *series = &c->report->series;
+  const double *value = series->sample[series->count - 1].value;
+  double shift = value[GRASP_SHIFT];
+  if (value[GRASP_AREA] > 0) {
+    c->touched = true;
+    c->report->came_free = false;
+    return false;
+  }
+  if (c->touched || c->along == 0) {
+    c->report->came_free = true;
+    c->report->free_at = shift;
+    c->touched = false;
+  }
+  const struct grasp_pull *pull = &c->f->grasp.pull;
+  return c->report->came_free &&
+         shift - c->report->free_at > pull->after_contact * pull->distance - 1e-12;
+}
+
+static double next_target(const struct course *c, double goal) {
+  double target = c->along + c->step;
+  return target > goal - 0.05 * c->step ? goal : target;
+}
+
+/* Goes on to `goal`, a recorded place of the stage. *over: the stage ends before it. */
+static enum status reach(struct course *c, double goal, bool *over) {
+  while (c->along < goal && !*over) {
+    int iterations = 0;
+    double target = next_target(c, goal), part = target - c->along;
+    bool moves = false;
+    enum status status =
+        ++c->steps > STEPS_MAX ? STATUS_STEP_MINIMUM : rest_at(c, target, &iterations);
+    if (final(status) || c->steps > STEPS_MAX) {
+      return status;
+    }
+    if (status != STATUS_OK) {
+      c->failure = status;
+      c->step = cut_factor * part;
+      if (c->step >= shortest * c->stage.full) {
+        continue;
+      }
+      if (!c->f->grasp.dynamics || c->jumps >= JUMPS_MAX) {
+        return STATUS_STEP_MINIMUM;
+      }
+      moves = true;
+      c->step = carried_step * c->stage.full;
+      status = carry_to(c, next_target(c, goal));
+    } else if (iterations <= EASY_ITERATIONS) {
+      c->step = fmin(grow_factor * c->step, c->stage.full);
+    }
+    if (status == STATUS_OK) {
+      status = take(c, moves);
+    }
+    if (status != STATUS_OK) {
+      return status;
+    }
+    *over = is_free(c);
+  }
+  return STATUS_OK;
+}
+
+static enum status follow_stage(struct course *c, const struct stage *stage) {
+  bool over = false;
+  c->stage = *stage;
+  c->along = 0;
+  c->step = 0.5 * stage->full;
+  c->steps = c->jumps = 0;
+  c->report->stage = stage->kind;
+  enum status status = take(c, false);
+  over = status == STATUS_OK && is_free(c);
+  for (int k = 1; k <= stage->records && status == STATUS_OK && !over; k++) {
+    status = reach(c, (double)k / stage->records, &over);
+  }
+  c->shift = shift_at(c, c->along);
+  return status;
+}
+
+/* The stages of the grasp; returns their number. */
+static int plan(const struct finger *f, struct stage out[STAGE_COUNT]) {
+  const struct grasp_spec *g = &f->grasp;
+  double way = vec3_norm(g->approach.from), longest = g->longest_step;
+  int count = 0, steps = f->spec.load.steps;
+  if (solve_has_gravity(&f->spec)) {
+    out[count++] = (struct stage){STAGE_GRAVITY, 1, 0.5, 1};
+  }
+  if (way > 0) {
+    out[count++] = (struct stage){STAGE_APPROACH, g->approach.steps, fmin(0.25, longest / way),
+                                  way / g->approach.rate};
+  }
+  out[count++] = (struct stage){STAGE_INFLATION, steps, fmin(0.1, 1.0 / steps), g->inflation_time};
+  if (g->pull.distance > 0) {
+    out[count++] = (struct stage){STAGE_PULL, g->pull.steps, fmin(0.1, longest / g->pull.distance),
+                                  g->pull.distance / g->pull.rate};
+  }
+  if (g->release) {
+    out[count++] = (struct stage){STAGE_RELEASE, steps, fmin(0.1, 1.0 / steps), g->inflation_time};
+  }
+  return count;
+}
+
+static void close_ledger(struct course *c) {
+  const struct energy *e = &c->f->energy;
+  double work = fabs(e->pressure_work) + fabs(e->weight_work) + fabs(e->obstacle_work);
+  c->report->energy_error = work > 0 ? fabs(e->remainder) / work : 0;
+  c->report->in_motion = c->stages > 0 ? c->moving / c->stages : 0;
+  c->report->along = c->along;
+}
+
+enum status course_follow(struct finger *f, const struct course_visit *visit,
+                          struct course_report *report, struct error *error) {
+  struct stage stages[STAGE_COUNT];
+  struct course c = {.f = f, .visit = visit, .report = report, .error = error};
+  int count = plan(f, stages);
+  *report = (struct course_report){.along = 0};
+  c.stage = stages[0];
+  struct fe_load none = load_at(&c, 0);
+  enum status status = model_evaluate(f->solve.model, &f->solve.state, &none, false);
+  model_commit_obstacles(f->solve.model, &f->solve.state);
+  energy_start(&f->energy, f->solve.model, &f->solve.state, &none, 0);
+  for (int k = 0; k < count && status == STATUS_OK; k++) {
+    status = follow_stage(&c, &stages[k]);
+  }
+  close_ledger(&c);
+  if (status != STATUS_OK) {
+    char why[sizeof error->message];
+    snprintf(why, sizeof why, "%.500s", error->status == status ? error->message : "");
+    error_set(error, status, "/grasp", "stopped in the %s, after %.3g %% of it: %s%s%s%s",
+              grasp_stage_word(c.stage.kind), 100 * c.along, status_sentence(status),
+              c.failure != STATUS_OK ? " (last attempt: " : "",
+              c.failure != STATUS_OK ? status_sentence(c.failure) : "",
+              c.failure != STATUS_OK ? ")" : "");
+    (void)why;
+  }
+  return status;
+}
+
+void course_report_release(struct course_report *report) {
+  grasp_series_release(&report->series);
+}
