@@ -7,7 +7,8 @@ source_dir=$(cd "$(dirname "$0")/.." && pwd)
 if [ $# = 0 ]; then
   mapfile -t programs < <(cd "$source_dir" && printf '%s\n' tests/unit/test_*.c tests/fuzz/fuzz_*.c)
   set -- "${programs[@]%.c}"
-  for name in cache control errors events hostile http list operation queue security submit tls; do
+  for name in cache control errors events hostile http list operation queue security study \
+    study_analysis study_designs study_optimise study_plots submit tls; do
     set -- "$@" "tests/api/test_$name.sh"
   done
 fi
