@@ -26,6 +26,7 @@
 #include "server/http/snapshots.h"
 #include "server/http/waiters.h"
 #include "server/maintenance.h"
+#include "server/slurm/slurm.h"
 #include "server/store/store.h"
 #include "server/study/conductor.h"
 #include "server/study/model.h"
@@ -97,7 +98,7 @@ static enum status parts_open_store(const struct options *options, struct parts 
   }
   if (status == STATUS_OK) {
     store_set_sharing(service->store, share_files, (void *)options->data);
-    status = store_recover(service->store, &recovered, error);
+    status = store_recover(service->store, options->executor != EXECUTOR_LOCAL, &recovered, error);
   }
   if (status == STATUS_OK) {
     status = job_reader_create(&service->reader, error);
@@ -135,24 +136,44 @@ static enum status executor_open(const struct options *options, struct parts *pa
     return status;
   }
   struct engine engine;
-  struct pool_settings settings = {.engine = {.store = service->store,
-                                              .disk = service->disk,
-                                              .tally = executor_tally(service->executor),
-                                              .data = options->data,
-                                              .solver = options->solver,
-                                              .memory_limit_bytes = options->memory_limit_bytes,
-                                              .files_limit_bytes = options->files_limit_bytes,
-                                              .time_limit_s = options->time_limit_s,
-                                              .timeout_margin_s = options->timeout_margin_s,
-                                              .retry_delay_s = options->retry_delay_s,
-                                              .changed = job_changed,
-                                              .progressed = job_progressed,
-                                              .context = service},
-                                   .isolation = &parts->isolation,
-                                   .workers = options->workers};
-  status = pool_create(&settings, &engine, error);
+  struct pool_settings local = {
+      .engine = {.store = service->store,
+                 .disk = service->disk,
+                 .tally = executor_tally(service->executor),
+                 .data = options->data,
+                 .solver = options->solver,
+                 .memory_limit_bytes = options->memory_limit_bytes,
+                 .files_limit_bytes = options->files_limit_bytes,
+                 .time_limit_s = options->time_limit_s,
+                 .timeout_margin_s = options->timeout_margin_s,
+                 .retry_delay_s = options->retry_delay_s,
+                 .changed = job_changed,
+                 .progressed = job_progressed,
+                 .context = service},
+      .taste = {.engine = options->executor == EXECUTOR_LOCAL ? ENGINE_NONE : ENGINE_LOCAL,
+                .others = options->executor == EXECUTOR_BOTH},
+      .isolation = &parts->isolation,
+      .workers = options->workers};
+  status = pool_create(&local, &engine, error);
   if (status == STATUS_OK) {
     executor_add(service->executor, engine);
+  }
+  if (status == STATUS_OK && options->executor != EXECUTOR_LOCAL) {
+    struct slurm_settings slurm = {
+        .engine = local.engine,
+        .taste = {.engine = ENGINE_SLURM, .others = options->executor == EXECUTOR_SLURM},
+        .partition = options->slurm_partition,
+        .account = options->slurm_account,
+        .queue = options->slurm_queue,
+        .bundle_s = options->slurm_bundle_s,
+        .nice = (int)options->slurm_nice};
+    if (options->slurm_solver[0]) {
+      slurm.engine.solver = options->slurm_solver;
+    }
+    status = slurm_create(&slurm, &engine, error);
+    if (status == STATUS_OK) {
+      executor_add(service->executor, engine);
+    }
   }
   return status;
 }

@@ -12,6 +12,7 @@
 
 #include "solver/answer.h"
 #include "solver/base/clock.h"
+#include "solver/cancel.h"
 #include "solver/fe/warm.h"
 #include "solver/job/json.h"
 #include "solver/post/output.h"
@@ -162,13 +163,12 @@ static enum status solve_member(struct bundle *bundle, struct member *member, bo
                               .carry = &bundle->carry,
                               .events = member->events,
                               .verbose = o->verbose,
-                              .cancelled = o->cancelled};
+                              .cancelled = cancel_wanted};
     status = run_job(&spec, &run, &document, &ending, &problem);
     job_spec_release(&spec);
   }
   *code = status == STATUS_OK ? answer_exit_of_ending(ending) : answer_exit_of_error(&problem);
-  bundle->ended = status == STATUS_NO_MEMORY || ending == STATUS_NO_MEMORY ||
-                  (o->cancelled && o->cancelled(NULL));
+  bundle->ended = status == STATUS_NO_MEMORY || ending == STATUS_NO_MEMORY || cancel_all_wanted();
   if (status != STATUS_OK) {
     char text[ERROR_TEXT_MAX];
     fprintf(stderr, "pneulab-solve: %s\n", error_describe(&problem, text, sizeof text));
@@ -182,14 +182,28 @@ static enum status solve_member(struct bundle *bundle, struct member *member, bo
   return status;
 }
 
+/* Whether a chain begins with this member. */
+static bool starts_anew(const struct bundle *bundle, size_t index) {
+  const json_t *starts = json_object_get(bundle->document, "starts");
+  bool found = false;
+  for (size_t i = 0; i < json_array_size(starts) && !found; i++) {
+    found = json_integer_value(json_array_get(starts, i)) == (json_int_t)index;
+  }
+  return found;
+}
+
 static enum status run_member(struct bundle *bundle, size_t index, struct error *error) {
   struct member member = {.folder = json_string_value(json_array_get(bundle->members, index))};
   enum exit_code code = EXIT_INTERNAL;
   double start = clock_cpu_s();
+  cancel_watch_member(member.folder);
+  if (starts_anew(bundle, index)) {
+    run_carry_release(&bundle->carry);
+  }
   tell_begun(index);
   enum status status = member_open(&member, error);
   if (status == STATUS_OK) {
-    bool last = index + 1 == json_array_size(bundle->members);
+    bool last = index + 1 == json_array_size(bundle->members) || starts_anew(bundle, index + 1);
     status = solve_member(bundle, &member, last, &code, error);
   }
   if (member.events) {
@@ -240,11 +254,12 @@ int bundle_run(const struct bundle_options *options) {
   struct error error = {.status = STATUS_OK};
   enum status status = bundle_open(&bundle, &error);
   size_t count = json_array_size(bundle.members), next = 0;
-  bool cancelled = options->cancelled && options->cancelled(NULL);
+  bool cancelled = cancel_all_wanted();
   while (status == STATUS_OK && next < count && !bundle.ended && !cancelled) {
     status = run_member(&bundle, next++, &error);
-    cancelled = options->cancelled && options->cancelled(NULL);
+    cancelled = cancel_all_wanted();
   }
+  cancel_watch_member(NULL);
   if (status != STATUS_OK) {
     char text[ERROR_TEXT_MAX];
     fprintf(stderr, "pneulab-solve: %s\n", error_describe(&error, text, sizeof text));

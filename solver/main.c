@@ -3,7 +3,6 @@
 #include <errno.h>
 #include <getopt.h>
 #include <jansson.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,20 +12,9 @@
 #include "solver/job/json.h"
 #include "solver/answer.h"
 #include "solver/bundle.h"
+#include "solver/cancel.h"
 #include "solver/run.h"
 #include "solver/study/study_run.h"
-
-static volatile sig_atomic_t cancel_requested;
-
-static void on_terminate(int number) {
-  (void)number;
-  cancel_requested = 1;
-}
-
-static bool cancelled(void *context) {
-  (void)context;
-  return cancel_requested != 0;
-}
 
 static const char usage[] =
     "usage: pneulab-solve [--out DIR] [--events FILE] [--threads N] [--jobs N] [--deck FILE]\n"
@@ -198,19 +186,17 @@ static enum status run(const struct job_spec *spec, const struct arguments *a, j
 }
 
 int main(int argc, char **argv) {
-  struct arguments a = {.threads = 1, .run.cancelled = cancelled};
+  struct arguments a = {.threads = 1, .run.cancelled = cancel_wanted};
   struct error error = {0};
   struct job_spec spec;
   if (!parse_arguments(argc, argv, &a)) {
     fputs(usage, stderr);
     return EXIT_INTERNAL;
   }
-  struct sigaction action = {.sa_handler = on_terminate};
-  sigaction(SIGTERM, &action, NULL);
-  sigaction(SIGINT, &action, NULL);
+  cancel_watch();
   openblas_set_num_threads(a.threads);
   if (a.bundle) {
-    struct bundle_options bundle = {a.bundle, a.run.verbose, cancelled};
+    struct bundle_options bundle = {a.bundle, a.run.verbose};
     return bundle_run(&bundle);
   }
   if (read_spec(&a, &spec, &error) != STATUS_OK) {

@@ -18,7 +18,13 @@ struct options {
   char worker_write[4096];
   unsigned worker_nice;
   struct option_address listen; /* where to listen */
-  unsigned executor;            /* index among the words of --executor */
+  unsigned executor;            /* enum options_executor */
+  char slurm_partition[64];     /* "": the cluster's default, */
+  char slurm_account[64];       /* likewise */
+  char slurm_solver[PATH_MAX];  /* pneulab-solve on the nodes, "" for `solver` */
+  unsigned slurm_queue;         /* tasks that wait on the cluster at a time */
+  double slurm_bundle_s;        /* what small jobs of one task together take */
+  unsigned slurm_nice;          /* of tasks of priority 0 */
   unsigned workers;
   unsigned connections_per_address;
   unsigned subscribers; /* to the stream of events; their connections do not count as others do */
@@ -47,6 +53,9 @@ struct options {
   bool force;                     /* replace what is there */
   unsigned action;                /* enum options_action */
 };
+
+/* Who solves jobs that do not say it. */
+enum options_executor { EXECUTOR_LOCAL, EXECUTOR_SLURM, EXECUTOR_BOTH };
 
 enum options_action { OPTIONS_RUN, OPTIONS_HELP, OPTIONS_VERSION };
 

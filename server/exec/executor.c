@@ -48,11 +48,13 @@ bool executor_progress(struct executor *executor, int64_t job_id, struct progres
   return found;
 }
 
-json_t *executor_place(struct executor *executor, int64_t job_id, bool waits) {
+json_t *executor_place(struct executor *executor, int64_t job_id, enum store_engine asked,
+                       bool waits) {
   json_t *place = NULL;
   for (size_t i = 0; i < executor->engines && !place; i++) {
     const struct engine *engine = &executor->engine[i];
-    place = engine->methods->place ? engine->methods->place(engine->self, job_id, waits) : NULL;
+    place =
+        engine->methods->place ? engine->methods->place(engine->self, job_id, asked, waits) : NULL;
   }
   return place;
 }

@@ -28,8 +28,8 @@ struct engine_methods {
   /* What a running job has reported; false when it does not run here. */
   bool (*progress)(void *engine, int64_t job_id, struct progress *progress);
   /* Where a job is and what it waits for, as an object for people, a new reference; NULL when there
-   * is nothing to tell. waits: it is in the queue of the store. May be NULL. */
-  json_t *(*place)(void *engine, int64_t job_id, bool waits);
+   * is nothing to tell. asked: whose job it is; waits: in the queue of the store. May be NULL. */
+  json_t *(*place)(void *engine, int64_t job_id, enum store_engine asked, bool waits);
   /* Whether workers can be started. STATUS_NOT_FOUND with the reason. */
   enum status (*check)(void *engine, struct error *error);
   /* No job is started any more. */
@@ -87,7 +87,8 @@ bool executor_progress(struct executor *executor, int64_t job_id, struct progres
 
 /* Where a job is: see struct engine_methods. A new reference, NULL when there is nothing to tell.
  */
-json_t *executor_place(struct executor *executor, int64_t job_id, bool waits);
+json_t *executor_place(struct executor *executor, int64_t job_id, enum store_engine asked,
+                       bool waits);
 
 /* Whether workers can be started. STATUS_NOT_FOUND with the reason of the first engine that
  * cannot. */

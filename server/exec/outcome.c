@@ -210,10 +210,20 @@ void outcome_blame_memory(struct outcome *outcome, const struct process_end *end
   }
 }
 
-void outcome_not_started(struct outcome *outcome, const struct error *error) {
+void outcome_make(struct outcome *outcome, enum attempt_end end, const char *reason_code,
+                  const char *format, ...) {
+  char message[sizeof outcome->message];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(message, sizeof message, format, arguments);
+  va_end(arguments);
   *outcome = (struct outcome){0};
-  outcome_set(outcome, ATTEMPT_WORKER_LOST, "worker_not_started", "%s", error->message);
+  outcome_set(outcome, end, reason_code, "%s", message);
   outcome->attempt.exit_code = -1;
+}
+
+void outcome_not_started(struct outcome *outcome, const struct error *error) {
+  outcome_make(outcome, ATTEMPT_WORKER_LOST, "worker_not_started", "%s", error->message);
 }
 
 void outcome_set_unstorable(struct outcome *outcome, const struct error *error) {
@@ -238,11 +248,9 @@ void outcome_set_requeued(struct outcome *outcome) {
 }
 
 void outcome_put_back(struct outcome *outcome) {
-  *outcome = (struct outcome){0};
-  outcome_set(
-      outcome, ATTEMPT_REQUEUED, "not_begun",
-      "The process that was to solve the job after others ended before; it will run again.");
-  outcome->attempt.exit_code = -1;
+  outcome_make(outcome, ATTEMPT_REQUEUED, "not_begun",
+               "The process that was to solve the job after others ended before; it will run "
+               "again.");
 }
 
 void outcome_clear(struct outcome *outcome) {

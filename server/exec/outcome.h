@@ -40,6 +40,10 @@ void outcome_judge(struct outcome *outcome, const struct process_end *end, enum 
 void outcome_blame_memory(struct outcome *outcome, const struct process_end *end,
                           uint64_t limit_bytes);
 
+/* An outcome without a result, of which no worker has told anything. */
+void outcome_make(struct outcome *outcome, enum attempt_end end, const char *reason_code,
+                  const char *format, ...) __attribute__((format(printf, 4, 5)));
+
 /* The outcome of a worker that could not be started. */
 void outcome_not_started(struct outcome *outcome, const struct error *error);
 

@@ -178,7 +178,8 @@ static void *slot_main(void *context) {
       pthread_mutex_unlock(&slot->pool->mutex);
       claimed = false;
       if (open && disk_check(settings->disk, NULL) == STATUS_OK &&
-          store_claim(settings->store, &claim, &claimed, &error) != STATUS_OK) {
+          store_claim_for(settings->store, slot->pool->settings.taste, &claim, &claimed, &error) !=
+              STATUS_OK) {
         log_event(LOG_LEVEL_ERROR, "cannot take a job", LOG_TEXT("error", error.message));
       }
       if (claimed) {

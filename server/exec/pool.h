@@ -8,6 +8,7 @@
 
 struct pool_settings {
   struct engine_settings engine;
+  struct store_taste taste;          /* which jobs are its own */
   const struct isolation *isolation; /* lives as long as the pool */
   unsigned workers;
 };

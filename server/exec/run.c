@@ -18,11 +18,11 @@ bool run_path(char path[PATH_MAX], const char *directory, const char *name) {
   return length > 0 && length < PATH_MAX;
 }
 
-enum status run_prepare(const struct run_settings *settings, const struct claim *claim,
-                        struct run_paths *paths, struct error *error) {
+enum status run_paths_make(const char *data, int64_t job_id, int64_t attempt,
+                           struct run_paths *paths, struct error *error) {
   char name[RUN_DIRECTORY_SIZE];
-  run_directory(claim->job_id, claim->attempt, name);
-  if (!run_path(paths->directory, settings->data, name) ||
+  run_directory(job_id, attempt, name);
+  if (!run_path(paths->directory, data, name) ||
       !run_path(paths->job, paths->directory, "job.json") ||
       !run_path(paths->events, paths->directory, "events.jsonl") ||
       !run_path(paths->log, paths->directory, "log.txt") ||
@@ -31,12 +31,20 @@ enum status run_prepare(const struct run_settings *settings, const struct claim 
       !run_path(paths->artifacts, paths->directory, "out")) {
     return error_set(error, STATUS_TOO_LARGE, NULL, "The path of the data directory is too long.");
   }
+  return STATUS_OK;
+}
+
+enum status run_folder_make(const struct run_paths *paths, const char *document,
+                            struct error *error) {
   file_remove_tree(paths->directory);
   enum status status = file_make_directory(paths->artifacts, error);
-  if (status == STATUS_OK) {
-    status = file_write(paths->job, claim->document, strlen(claim->document), error);
-  }
-  return status;
+  return status == STATUS_OK ? file_write(paths->job, document, strlen(document), error) : status;
+}
+
+enum status run_prepare(const struct run_settings *settings, const struct claim *claim,
+                        struct run_paths *paths, struct error *error) {
+  enum status status = run_paths_make(settings->data, claim->job_id, claim->attempt, paths, error);
+  return status == STATUS_OK ? run_folder_make(paths, claim->document, error) : status;
 }
 
 static enum status run_start(const struct run_settings *settings, const struct run_paths *paths,

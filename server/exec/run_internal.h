@@ -1,4 +1,4 @@
-/* What runs of one job and runs of a bundle share. */
+/* What runs of one job, runs of a bundle and tasks of a cluster share. */
 #ifndef PNEULAB_EXEC_RUN_INTERNAL_H
 #define PNEULAB_EXEC_RUN_INTERNAL_H
 
@@ -33,7 +33,15 @@ struct watch {
 /* Joins a folder and a name; false when the path is too long. */
 bool run_path(char path[PATH_MAX], const char *directory, const char *name);
 
-/* Creates the folder of the attempt with the job in it. */
+/* Fills in the paths of an attempt; STATUS_TOO_LARGE when they are too long. */
+enum status run_paths_make(const char *data, int64_t job_id, int64_t attempt,
+                           struct run_paths *paths, struct error *error);
+
+/* Creates the folder of an attempt with the job in it. */
+enum status run_folder_make(const struct run_paths *paths, const char *document,
+                            struct error *error);
+
+/* Both for a claim. */
 enum status run_prepare(const struct run_settings *settings, const struct claim *claim,
                         struct run_paths *paths, struct error *error);
 

@@ -38,6 +38,19 @@ static void progress_set(const struct service *service, const struct job_record 
   json_object_set_new(view, "progress_detail", reported ? progress_json(&progress) : json_null());
 }
 
+/* Adds "cluster", where a job that has not ended is, or why it waits, if there is something to
+ * tell. */
+static void cluster_set(const struct service *service, const struct job_record *record,
+                        json_t *view) {
+  bool waits = record->state == JOB_STATE_QUEUED || record->state == JOB_STATE_RETRY_WAIT;
+  json_t *place = job_state_terminal(record->state) || strcmp(record->kind, "study") == 0
+                      ? NULL
+                      : executor_place(service->executor, record->id, record->engine, waits);
+  if (place) {
+    json_object_set_new(view, "cluster", place);
+  }
+}
+
 static void link_set(json_t *links, const char *name, int64_t id, const char *rest) {
   char path[200];
   snprintf(path, sizeof path, "/api/v1/jobs/%lld%s", (long long)id, rest);
@@ -133,6 +146,7 @@ json_t *job_view(const struct service *service, const struct job_record *record,
                 time_view(record->started_ms), "finished", time_view(record->finished_ms));
   if (view) {
     progress_set(service, record, view);
+    cluster_set(service, record, view);
   }
   if (view && record->retry_of != 0) {
     json_object_set_new(view, "retry_of", json_integer(record->retry_of));
@@ -187,8 +201,10 @@ void job_view_reply(struct request *request, struct reply *reply, unsigned statu
     reply_error(reply, &error);
     return;
   }
-  reply_json(reply, status, job_view(service, &record, true));
-  if (plain && state_rests(record.state) && reply->body && reply->size <= KEPT_SIZE_MAX) {
+  json_t *view = job_view(service, &record, true);
+  bool told = json_is_object(json_object_get(view, "cluster")); /* it may change by itself */
+  reply_json(reply, status, view);
+  if (plain && state_rests(record.state) && !told && reply->body && reply->size <= KEPT_SIZE_MAX) {
     answers_keep(service->answers, id, version, reply->body, reply->size);
   }
   job_record_clear(&record);

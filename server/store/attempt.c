@@ -47,9 +47,9 @@ enum status store_attempt_running(struct store *store, int64_t job_id, int64_t a
                        job_state_word(state));
   }
   if (status == STATUS_OK) {
-    status =
-        sql_run(store->writer, error, "UPDATE attempt SET pid = ? WHERE job_id = ? AND number = ?",
-                "iii", pid, job_id, attempt);
+    status = sql_run(store->writer, error,
+                     "UPDATE attempt SET pid = nullif(?, 0) WHERE job_id = ? AND number = ?", "iii",
+                     pid, job_id, attempt);
   }
   if (status == STATUS_OK) {
     status =
@@ -209,7 +209,11 @@ enum status store_attempts_finish(struct store *store,
   return store_write_end(store, status, error);
 }
 
-enum status store_recover(struct store *store, int64_t *count, struct error *error) {
+/* Of jobs: no attempt is open. */
+#define CLOSED                                                                                     \
+  "AND NOT EXISTS (SELECT 1 FROM attempt WHERE attempt.job_id = job.id AND attempt.outcome = '')"
+
+enum status store_recover(struct store *store, bool cluster, int64_t *count, struct error *error) {
   int64_t now = clock_unix_ms();
   *count = 0;
   enum status status = store_write_begin(store, error);
@@ -220,12 +224,12 @@ enum status store_recover(struct store *store, int64_t *count, struct error *err
   status = sql_run(db, error,
                    "UPDATE attempt SET outcome = 'lost', reason_code = 'daemon_stopped', "
                    "message = 'The daemon stopped while the worker ran.', finished_ms = ? "
-                   "WHERE outcome = ''",
-                   "i", now);
+                   "WHERE outcome = '' AND (batch_id IS NULL OR NOT ?)",
+                   "ii", now, (int64_t)cluster);
   if (status == STATUS_OK) {
     status = sql_run(db, error,
                      "UPDATE job SET state = 'cancelled', message = 'Cancelled on request.', "
-                     "finished_ms = ? WHERE state = 'cancelling' AND kind <> 'study'",
+                     "finished_ms = ? WHERE state = 'cancelling' AND kind <> 'study' " CLOSED,
                      "i", now);
     *count += sqlite3_changes(db);
   }
@@ -235,7 +239,7 @@ enum status store_recover(struct store *store, int64_t *count, struct error *err
                      "message = 'Every attempt was lost.', finished_ms = ? "
                      "WHERE state IN ('starting', 'running') AND kind <> 'study' AND (SELECT "
                      "count(*) FROM attempt "
-                     "WHERE job_id = job.id AND outcome = 'lost') >= ?",
+                     "WHERE job_id = job.id AND outcome = 'lost') >= ? " CLOSED,
                      "ii", now, (int64_t)STORE_ATTEMPTS_MAX);
     *count += sqlite3_changes(db);
   }
@@ -243,7 +247,7 @@ enum status store_recover(struct store *store, int64_t *count, struct error *err
     status = sql_run(db, error,
                      "UPDATE job SET state = 'queued', reason_code = 'daemon_stopped', "
                      "message = 'The daemon stopped while the job ran; it will run again.' "
-                     "WHERE state IN ('starting', 'running')",
+                     "WHERE state IN ('starting', 'running') " CLOSED,
                      "");
     *count += sqlite3_changes(db);
   }

@@ -95,6 +95,9 @@ enum status queue_take(struct store *store, const struct claim *claim, int64_t n
  * write transaction; what has been appended to the claim is freed with it. */
 enum status chain_claim(struct store *store, struct claim *claim, int64_t now, struct error *error);
 
+/* The engine that a value of the label "executor" (or NULL) asks for. */
+enum store_engine engine_of_label(const char *value);
+
 /* How a job that asks for it can be answered. */
 enum reuse { REUSE_NONE, REUSE_ANSWERED, REUSE_WAITS };
 

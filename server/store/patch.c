@@ -81,10 +81,33 @@ static enum status patch_labels(sqlite3 *db, int64_t id, const json_t *labels,
   return labels_count(db, id, error);
 }
 
+/* The engine follows the label; that of a study counts for members that are stored from now on. */
+static enum status patch_engine(sqlite3 *db, int64_t id, struct error *error) {
+  sqlite3_stmt *statement;
+  int row = 0;
+  enum status status =
+      sql_prepare(db, &statement, error,
+                  "SELECT value FROM job_label WHERE job_id = ? AND name = 'executor'", "i", id);
+  if (status == STATUS_OK) {
+    status = sql_step(statement, &row, error);
+  }
+  if (status == STATUS_OK) {
+    int64_t engine = engine_of_label(row ? sql_text(statement, 0) : NULL);
+    status = sql_run(db, error, "UPDATE job SET engine = ?1 WHERE id = ?2 AND engine <> ?1", "ii",
+                     engine, id);
+  }
+  sql_done(statement);
+  return status;
+}
+
 static enum status patch_apply(sqlite3 *db, int64_t id, const json_t *patch, struct error *error) {
   const json_t *name = json_object_get(patch, "name");
   const json_t *priority = json_object_get(patch, "priority");
-  enum status status = patch_labels(db, id, json_object_get(patch, "labels"), error);
+  const json_t *labels = json_object_get(patch, "labels");
+  enum status status = patch_labels(db, id, labels, error);
+  if (status == STATUS_OK && labels) {
+    status = patch_engine(db, id, error);
+  }
   if (status == STATUS_OK && name) {
     status = sql_run(db, error, "UPDATE job SET name = ? WHERE id = ?", "ti",
                      json_is_null(name) ? "" : json_string_value(name), id);

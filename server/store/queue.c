@@ -1,5 +1,6 @@
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "server/base/clock.h"
 #include "server/store/connection.h"
@@ -50,16 +51,32 @@ enum status queue_charge(sqlite3 *db, int64_t job_id, int64_t attempt, int64_t n
   return status;
 }
 
+enum store_engine engine_of_label(const char *value) {
+  if (value && strcmp(value, "local") == 0) {
+    return ENGINE_LOCAL;
+  }
+  return value && strcmp(value, "slurm") == 0 ? ENGINE_SLURM : ENGINE_NONE;
+}
+
+/* The first of the jobs of an engine, by the index of the queue. */
+#define NEXT_OF(ENGINE)                                                                            \
+  "SELECT * FROM (SELECT priority, running, charge, job_id FROM submitter_queue WHERE engine "     \
+  "= " ENGINE " ORDER BY priority DESC, running, charge, job_id LIMIT 1)"
+
 /* Reads the next job into *claim; job_id is 0 when none may start. */
-static enum status claim_find(sqlite3 *db, struct claim *claim, bool *reuse, struct error *error) {
+static enum status claim_find(sqlite3 *db, struct store_taste taste, struct claim *claim,
+                              bool *reuse, struct error *error) {
   sqlite3_stmt *statement;
   int row = 0;
+  bool all = taste.engine == ENGINE_NONE;
   enum status status = sql_prepare(
       db, &statement, error,
       "SELECT id, attempt + 1, timeout_s, memory_bytes, document, reuse AND state = 'queued' "
-      "FROM job WHERE id = (SELECT job_id FROM submitter_queue "
-      "ORDER BY priority DESC, running, charge, job_id LIMIT 1)",
-      "");
+      "FROM job WHERE id = (SELECT job_id FROM (" NEXT_OF("?1") " UNION ALL " NEXT_OF(
+          "?2") " UNION ALL " NEXT_OF("?3") ") ORDER BY priority DESC, running, charge, job_id "
+                                            "LIMIT 1)",
+      "iii", (int64_t)(all ? ENGINE_LOCAL : taste.engine),
+      (int64_t)(all || taste.others ? ENGINE_NONE : -1), (int64_t)(all ? ENGINE_SLURM : -1));
   if (status == STATUS_OK) {
     status = sql_step(statement, &row, error);
   }
@@ -80,11 +97,12 @@ static enum status claim_find(sqlite3 *db, struct claim *claim, bool *reuse, str
 
 /* Finds the next job that is to run: on the way those equal to a running one are set aside. One
  * that could be answered ends the search. */
-static enum status claim_next(struct store *store, struct claim *claim, struct error *error) {
+static enum status claim_next(struct store *store, struct store_taste taste, struct claim *claim,
+                              struct error *error) {
   for (int i = 0; i < SET_ASIDE_MAX; i++) {
     bool wanted = false;
     enum reuse reuse = REUSE_NONE;
-    enum status status = claim_find(store->writer, claim, &wanted, error);
+    enum status status = claim_find(store->writer, taste, claim, &wanted, error);
     if (status == STATUS_OK && wanted) {
       status = reuse_try(store, claim->job_id, &reuse, error);
     }
@@ -119,6 +137,11 @@ enum status queue_take(struct store *store, const struct claim *claim, int64_t n
 
 enum status store_claim(struct store *store, struct claim *claim, bool *claimed,
                         struct error *error) {
+  return store_claim_for(store, (struct store_taste){ENGINE_NONE, true}, claim, claimed, error);
+}
+
+enum status store_claim_for(struct store *store, struct store_taste taste, struct claim *claim,
+                            bool *claimed, struct error *error) {
   int64_t now = clock_unix_ms();
   *claim = (struct claim){0};
   *claimed = false;
@@ -131,7 +154,7 @@ enum status store_claim(struct store *store, struct claim *claim, bool *claimed,
                    "WHERE state = 'retry_wait' AND retry_due = 0 AND not_before_ms <= ?",
                    "i", now);
   if (status == STATUS_OK) {
-    status = claim_next(store, claim, error);
+    status = claim_next(store, taste, claim, error);
   }
   if (status == STATUS_OK && claim->job_id != 0) {
     status = queue_take(store, claim, now, error);
@@ -146,5 +169,26 @@ enum status store_claim(struct store *store, struct claim *claim, bool *claimed,
     claim_clear(claim);
     claim->answered_id = answered;
   }
+  return status;
+}
+
+enum status store_ready(struct store *store, int64_t *count, struct error *error) {
+  sqlite3_stmt *statement = NULL;
+  int row = 0;
+  sqlite3 *db = store_read_begin(store, error);
+  *count = 0;
+  if (!db) {
+    return STATUS_IO;
+  }
+  enum status status =
+      sql_prepare(db, &statement, error, "SELECT coalesce(sum(ready), 0) FROM submitter_queue", "");
+  if (status == STATUS_OK) {
+    status = sql_step(statement, &row, error);
+  }
+  if (status == STATUS_OK && row) {
+    *count = sqlite3_column_int64(statement, 0);
+  }
+  sql_done(statement);
+  store_read_end(store, db);
   return status;
 }

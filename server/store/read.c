@@ -110,7 +110,7 @@ static void take_attempt(json_t *into, sqlite3_stmt *row) {
   "coalesce(job.finished_ms, 0), EXISTS (SELECT 1 FROM result WHERE result.job_id = job.id), "     \
   "job.retry_reason, job.submitter, job.priority, coalesce(job.reused_from, 0), "                  \
   "coalesce(job.waits_for, 0), coalesce(job.study_id, 0), coalesce(job.member, 0), "               \
-  "coalesce(job.extends, 0)"
+  "coalesce(job.extends, 0), job.engine"
 
 /* Fills *record from a row of JOB_COLUMNS and reads labels, metrics, artifacts. */
 static enum status row_read(sqlite3 *db, sqlite3_stmt *row, struct job_record *record,
@@ -135,6 +135,7 @@ static enum status row_read(sqlite3 *db, sqlite3_stmt *row, struct job_record *r
                                 .study_id = sqlite3_column_int64(row, 18),
                                 .member = sqlite3_column_int64(row, 19),
                                 .extends = sqlite3_column_int64(row, 20),
+                                .engine = (enum store_engine)sqlite3_column_int(row, 21),
                                 .labels = json_object(),
                                 .metrics = json_object(),
                                 .artifacts = json_array()};

@@ -120,10 +120,25 @@ struct claim {
 enum status store_claim(struct store *store, struct claim *claim, bool *claimed,
                         struct error *error);
 
+/* Whose jobs are taken: those that ask for the engine (the labels "executor": "local" and "slurm"),
+ * and with `others` those that ask for none. */
+enum store_engine { ENGINE_NONE, ENGINE_LOCAL, ENGINE_SLURM };
+struct store_taste {
+  enum store_engine engine; /* ENGINE_NONE: all jobs */
+  bool others;
+};
+
+/* The same for the jobs of one engine. */
+enum status store_claim_for(struct store *store, struct store_taste taste, struct claim *claim,
+                            bool *claimed, struct error *error);
+
+/* Number of jobs that may start now. */
+enum status store_ready(struct store *store, int64_t *count, struct error *error);
+
 /* Frees what a claim and those behind it own. */
 void claim_clear(struct claim *claim);
 
-/* The worker of an attempt runs: starting -> running. STATUS_CONFLICT when the attempt is no
+/* The worker of an attempt runs (pid 0: not on this machine): starting -> running. STATUS_CONFLICT when the attempt is no
  * longer the job's latest or the job is being cancelled. */
 enum status store_attempt_running(struct store *store, int64_t job_id, int64_t attempt, int64_t pid,
                                   struct error *error);
@@ -169,8 +184,9 @@ enum status store_attempts_finish(struct store *store,
 
 /* After a start: attempts that an earlier daemon left open are marked lost; their jobs are queued
  * again, those being cancelled become cancelled, those out of attempts failed. A study runs again
- * however often its attempts were lost, and goes on being cancelled. *count: such jobs. */
-enum status store_recover(struct store *store, int64_t *count, struct error *error);
+ * however often its attempts were lost, and goes on being cancelled. With `cluster` those that a
+ * cluster solves stay open, to be adopted. *count: such jobs. */
+enum status store_recover(struct store *store, bool cluster, int64_t *count, struct error *error);
 
 /* ---- reading ----------------------------------------------------------------------------- */
 
@@ -186,6 +202,7 @@ struct job_record {
   int64_t reused_from, waits_for;              /* 0: none */
   int64_t study_id, member;                    /* of a member of a study; study_id 0: of none */
   int64_t extends;                             /* of a study: the one that it continues, or 0 */
+  enum store_engine engine;                    /* that its label asks for */
   int64_t created_ms, started_ms, finished_ms; /* 0: not yet */
   bool has_result;
   json_t *labels;    /* object of strings */

@@ -67,6 +67,12 @@ static enum status submission_labels(sqlite3 *db, int64_t id, const json_t *labe
   return STATUS_OK;
 }
 
+/* The engine that the label "executor" asks for. */
+static int64_t submission_engine(const struct submission *submission) {
+  const json_t *labels = json_object_get(submission->root, "labels");
+  return engine_of_label(json_string_value(json_object_get(labels, "executor")));
+}
+
 static enum status submission_insert(struct store *store, const struct submission *submission,
                                      int64_t *id, struct error *error) {
   sqlite3 *db = store->writer;
@@ -76,17 +82,18 @@ static enum status submission_insert(struct store *store, const struct submissio
       db, error,
       "INSERT INTO job (kind, name, document, spec_hash, timeout_s, retry_of, idempotency_key, "
       "created_ms, submitter, priority, memory_bytes, reuse, retry_reason, extends, study_id, "
-      "member, chain, chain_position) SELECT ?, ?, ?, ?, ?, nullif(?, 0), ?, "
+      "member, chain, chain_position, engine) SELECT ?, ?, ?, ?, ?, nullif(?, 0), ?, "
       "max(?, coalesce((SELECT created_ms FROM job ORDER BY id DESC LIMIT 1), 0)), ?, ?, ?, ?, ?, "
-      "nullif(?, 0), nullif(?, 0), iif(?, ?, NULL), iif(?, ?, NULL), iif(?, ?, NULL)",
-      "ttttdititiiitiiiiiiii", submission_text(submission, "kind"),
+      "nullif(?, 0), nullif(?, 0), iif(?, ?, NULL), iif(?, ?, NULL), iif(?, ?, NULL), "
+      "coalesce(nullif(?, 0), (SELECT engine FROM job WHERE id = ?), 0)",
+      "ttttdititiiitiiiiiiiiii", submission_text(submission, "kind"),
       submission_text(submission, "name"), submission->document, submission->spec_hash,
       submission->timeout_s, submission->retry_of, submission->idempotency_key, clock_unix_ms(),
       submission_submitter(submission), (int64_t)submission->priority,
       (int64_t)submission->memory_bytes, (int64_t)submission->reuse,
       submission->retry_reason ? submission->retry_reason : "", submission->extends,
       submission->study_id, member, submission->member, chain, submission->chain, chain,
-      submission->chain_position);
+      submission->chain_position, submission_engine(submission), submission->study_id);
   if (status != STATUS_OK) {
     return status;
   }

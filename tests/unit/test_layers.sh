@@ -13,7 +13,7 @@ rank() {
   solver/fe/* | solver/hlpv/* | solver/axi/*) echo 4 ;;
   solver/post/* | solver/verify/* | solver/material/* | solver/identify/* | solver/snap/* | solver/bistable/*) echo 5 ;;
   solver/grasp/* | solver/study/*) echo 6 ;;
-  solver/run.[ch] | solver/main.c | solver/bundle.[ch] | solver/answer.[ch] | solver/solve.[ch] | solver/estimate.[ch]) echo 6 ;;
+  solver/run.[ch] | solver/main.c | solver/bundle.[ch] | solver/cancel.[ch] | solver/answer.[ch] | solver/solve.[ch] | solver/estimate.[ch]) echo 6 ;;
   server/*) echo 7 ;;
   *) echo 0 ;;
   esac

@@ -112,7 +112,7 @@ START_TEST(late_writer_is_fenced) {
   struct error error;
   int64_t id = submit();
   struct claim lost = run_next();
-  ck_assert_int_eq(store_recover(store, &count, &error), STATUS_OK); /* as after a crash */
+  ck_assert_int_eq(store_recover(store, false, &count, &error), STATUS_OK); /* as after a crash */
   ck_assert_int_eq(count, 1);
   ck_assert_int_eq(finish(&lost, ATTEMPT_SUCCEEDED, &state), STATUS_CONFLICT);
   ck_assert_int_eq(state_of(id), JOB_STATE_QUEUED);
@@ -147,7 +147,7 @@ START_TEST(jobs_that_are_always_lost_fail) {
   for (int i = 0; i < STORE_ATTEMPTS_MAX; i++) {
     ck_assert_int_eq(state_of(id), JOB_STATE_QUEUED);
     run_next();
-    ck_assert_int_eq(store_recover(store, &count, &error), STATUS_OK);
+    ck_assert_int_eq(store_recover(store, false, &count, &error), STATUS_OK);
   }
   ck_assert_int_eq(state_of(id), JOB_STATE_FAILED);
 }

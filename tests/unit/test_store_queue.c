@@ -31,7 +31,7 @@ START_TEST(version_two_is_migrated_with_its_jobs) {
   ck_assert_double_eq(sql_number("SELECT jobs FROM job_count WHERE state = 'queued'"), 2);
   struct error error;
   int64_t count;
-  ck_assert_int_eq(store_recover(store, &count, &error), STATUS_OK);
+  ck_assert_int_eq(store_recover(store, false, &count, &error), STATUS_OK);
   ck_assert_int_eq(count, 1);
   ck_assert_double_eq(sql_number("SELECT sum(running) FROM submitter"), 0);
   ck_assert_double_eq(sql_number("SELECT sum(ready) FROM submitter_queue"), 3);

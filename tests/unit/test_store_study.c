@@ -149,7 +149,7 @@ START_TEST(a_held_study_is_cancelled_with_its_members) {
   ck_assert_int_eq(state, JOB_STATE_CANCELLING);
   store_reopen();
   int64_t count;
-  ck_assert_int_eq(store_recover(store, &count, &error), STATUS_OK);
+  ck_assert_int_eq(store_recover(store, false, &count, &error), STATUS_OK);
   ck_assert_int_eq(state_of(claim.id), JOB_STATE_CANCELLING);
   ck_assert_int_eq(follow(claim.id, STUDY_CANCEL, 10), 2);
   ck_assert_int_eq(store_study_cancelled(store, claim.id, &error), STATUS_OK);
@@ -161,7 +161,7 @@ START_TEST(a_study_survives_any_number_of_daemons) {
   int64_t count;
   begin(2);
   for (int i = 0; i < STORE_ATTEMPTS_MAX + 3; i++) {
-    ck_assert_int_eq(store_recover(store, &count, &error), STATUS_OK);
+    ck_assert_int_eq(store_recover(store, false, &count, &error), STATUS_OK);
     ck_assert_int_eq(claim_study(true).attempt, i + 2);
   }
 }
@@ -203,7 +203,7 @@ START_TEST(studies_of_older_databases) {
                  "INSERT INTO attempt (job_id, number, created_ms) VALUES (1, 1, 1)");
   ck_assert_msg(store_open(directory, &store, &error) == STATUS_OK, "%s", error.message);
   ck_assert_double_eq(sql_number("SELECT running + 10 * ready FROM submitter"), 10);
-  ck_assert_int_eq(store_recover(store, &count, &error), STATUS_OK);
+  ck_assert_int_eq(store_recover(store, false, &count, &error), STATUS_OK);
   ck_assert_int_eq(claim_next().job_id, 3);
   ck_assert_int_eq(claim_study(true).id, 1);
   ck_assert_double_eq(sql_number("SELECT running FROM submitter"), 1);
