@@ -69,7 +69,7 @@ class Bodies {
     setText(this.output, `${this.slider.value}\u00a0% of each`);
     this.bodies.forEach(({ figure, surface, view, body }) => {
       const field = surface.fields.find(({ name }) => name === this.select.value);
-      const [first, last] = [surface.pressures[0], surface.pressures.at(-1)];
+      const [first, last] = [surface.positions[0], surface.positions.at(-1)];
       const pressure = first + share * (last - first);
       body.set(pressure, field, range);
       const text = `${number(Number(pressure.toPrecision(3)))}\u00a0kPa`;

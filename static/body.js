@@ -14,26 +14,49 @@ export function makeRenderer(canvas) {
   return new WebGLRenderer({ canvas, antialias: true, alpha: true });
 }
 
+// The surface of something, in the colours of its vertices or in one.
+export function surfaceMesh(geometry, settings = { vertexColors: true }) {
+  const mesh = new Mesh(geometry, new MeshLambertMaterial({
+    side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 2, ...settings }));
+  mesh.frustumCulled = false;
+  return mesh;
+}
+
+export function edgeLines(geometry, opacity = 0.65) {
+  const lines = new LineSegments(geometry, new LineBasicMaterial({ transparent: true, opacity }));
+  lines.frustumCulled = false;
+  return lines;
+}
+
+// A scene in light from the upper left behind whoever looks.
+export class Stage {
+  constructor(...parts) {
+    this.scene = new Scene();
+    this.light = new DirectionalLight(0xffffff, 1.9);
+    this.scene.add(...parts, new AmbientLight(0xffffff, 1.5), this.light, this.light.target);
+  }
+
+  // Draws into what the renderer's viewport is, width by height.
+  draw(renderer, camera, width, height) {
+    camera.aspect = width / height;
+    camera.updateProjectionMatrix();
+    this.light.position.set(-0.5, 0.9, 0.9).applyQuaternion(camera.quaternion);
+    renderer.render(this.scene, camera);
+  }
+}
+
 export class Body {
   constructor(surface) {
     this.surface = surface;
     this.skin = new Skin(surface);
-    this.scene = new Scene();
-    this.mesh = new Mesh(this.skin.body, new MeshLambertMaterial({
-      vertexColors: true, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 2,
-    }));
-    this.edges = new LineSegments(this.skin.edges, new LineBasicMaterial({ transparent: true, opacity: 0.65 }));
-    this.ghost = new LineSegments(this.skin.rest, new LineBasicMaterial({ transparent: true, opacity: 0.55 }));
-    this.light = new DirectionalLight(0xffffff, 1.9);
-    this.scene.add(this.mesh, this.edges, this.ghost, new AmbientLight(0xffffff, 1.5), this.light, this.light.target);
-    for (const part of [this.mesh, this.edges, this.ghost]) {
-      part.frustumCulled = false;
-    }
+    this.edges = edgeLines(this.skin.edges);
+    this.ghost = edgeLines(this.skin.rest, 0.55);
+    this.stage = new Stage(surfaceMesh(this.skin.body), this.edges, this.ghost);
   }
 
-  // The shape at a pressure, coloured by a field over a range.
-  set(pressure, field, range) {
-    this.skin.set(pressure, field, range, shades);
+  // The shape at a position, coloured by a field over a range.
+  set(position, field, range) {
+    this.skin.set(position, field, range, shades);
   }
 
   // A box around the body in all its states.
@@ -46,11 +69,7 @@ export class Body {
   draw(renderer, camera, width, height) {
     this.edges.material.color = new Color(pageColour('shape-edge'));
     this.ghost.material.color = new Color(pageColour('muted'));
-    camera.aspect = width / height;
-    camera.updateProjectionMatrix();
-    // light from the upper left behind whoever looks
-    this.light.position.set(-0.5, 0.9, 0.9).applyQuaternion(camera.quaternion);
-    renderer.render(this.scene, camera);
+    this.stage.draw(renderer, camera, width, height);
   }
 }
 

@@ -24,6 +24,12 @@ function linear(part) {
   return c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4;
 }
 
+// A body where nothing touches it, and what a gripper holds, as the page is now.
+export function graspColours() {
+  const [bare, object] = dark.matches ? [[138, 148, 160], [203, 156, 104]] : [[206, 211, 217], [219, 172, 116]];
+  return { bare: bare.map(linear), object: object.map(linear) };
+}
+
 // The map for areas as 256 colours of linear components, one after another.
 export function areaShades() {
   const shades = new Float32Array(3 * 256);

@@ -1,5 +1,5 @@
 // The page that compares jobs, as the daemon made it: the curves answer, and the bodies are turned
-// together. What is drawn over the pressure is part of the address.
+// together. What is drawn over the pressure, of grasps over the displacement, is part of the address.
 
 import { jobUrl, request } from './api.js';
 import { find, make } from './dom.js';
@@ -7,7 +7,8 @@ import { quantity } from './format.js';
 import { remember } from './live.js';
 
 const PRESSURE = 'pressure_kPa';
-const FIRST = ['bending_angle_deg', 'turn_angle_deg', 'elongation_mm'];
+const WAY = 'displacement_mm';
+const FIRST = ['grasp_force_N', 'bending_angle_deg', 'turn_angle_deg', 'elongation_mm'];
 
 function label(key) {
   const { label: text, unit } = quantity(key);
@@ -29,25 +30,31 @@ async function samplesOf({ id, name }) {
   }
 }
 
+// Of grasps that pull, the pull is what is compared: its samples, and the key of what they are drawn over.
+function pulls(all) {
+  const stages = all.map(({ samples, ...job }) => ({ ...job, samples: samples.filter(({ stage }) => stage === 'pull') }));
+  return stages.every(({ samples }) => samples.length > 0) ? [stages, WAY] : [all, PRESSURE];
+}
+
 // What all samples know as numbers, the most telling first.
-function keysOf(all) {
+function keysOf(all, x) {
   const keys = new Set(all.flatMap(({ samples }) => Object.entries(samples.at(-1) || {})
-    .filter(([key, value]) => typeof value === 'number' && key !== PRESSURE).map(([key]) => key)));
+    .filter(([key, value]) => typeof value === 'number' && key !== x).map(([key]) => key)));
   const rank = (key) => (FIRST.includes(key) ? FIRST.indexOf(key) : FIRST.length);
   return [...keys].sort((a, b) => rank(a) - rank(b) || label(a).localeCompare(label(b)));
 }
 
-function seriesOf(all, key) {
+function seriesOf(all, x, key) {
   return all.map(({ id, name, samples }) => ({
     name: `${id} · ${name}`,
-    points: samples.filter((sample) => typeof sample[key] === 'number' && typeof sample[PRESSURE] === 'number')
-      .map((sample) => [sample[PRESSURE], sample[key]]),
+    points: samples.filter((sample) => typeof sample[key] === 'number' && typeof sample[x] === 'number')
+      .map((sample) => [sample[x], sample[key]]),
   }));
 }
 
 async function setUpCurves() {
-  const all = await Promise.all(jobs().map(samplesOf));
-  const keys = keysOf(all);
+  const [all, x] = pulls(await Promise.all(jobs().map(samplesOf)));
+  const keys = keysOf(all, x);
   if (keys.length === 0) {
     return; // the picture stays
   }
@@ -61,8 +68,8 @@ async function setUpCurves() {
   find('curves').querySelector('figure').replaceChildren(place);
   const curves = new Curves(place);
   const show = () => {
-    curves.show({ x: label(PRESSURE), y: label(select.value), series: seriesOf(all, select.value) });
-    place.setAttribute('aria-label', `${label(select.value)} against pressure of ${all.length} jobs; `
+    curves.show({ x: label(x), y: label(select.value), series: seriesOf(all, x, select.value) });
+    place.setAttribute('aria-label', `${label(select.value)} against ${quantity(x).label.toLowerCase()} of ${all.length} jobs; `
       + 'the last values are in the table below');
   };
   select.addEventListener('change', () => {

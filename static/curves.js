@@ -23,7 +23,7 @@ function options({ x, y, series, phone }) {
     animation: !stillness.matches,
     animationDuration: 300,
     textStyle: { fontFamily: getComputedStyle(document.body).fontFamily },
-    aria: { enabled: true },
+    aria: { enabled: true, label: { enabled: false } }, // the page has a label of its own
     grid: { left: 64, right: 20, top: 16, bottom: 92, containLabel: false },
     legend: {
       bottom: 0, type: 'scroll', formatter: (name) => (phone && name.length > 22 ? `${name.slice(0, 21)}…` : name),

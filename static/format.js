@@ -1,6 +1,18 @@
 // Numbers, units and times in the form people read.
 
 const NAMES = {
+  grasp_force_peak_N: ['Grasp force, peak', 'N'],
+  grasp_force_mean_N: ['Grasp force, mean in contact', 'N'],
+  grasp_force_peak_at_mm: ['Peak after', 'mm'],
+  slip_onset_mm: ['Slips from', 'mm'],
+  released_at_mm: ['Lets go at', 'mm'],
+  displacement_mm: ['Displacement of the object', 'mm'],
+  slip_share: ['Share that slips', ''],
+  normal_force_N: ['Sum of the normal forces', 'N'],
+  contact_pressure_max_kPa: ['Largest contact pressure', 'kPa'],
+  contact_pressure_uniformity: ['Evenness of the contact pressure', ''],
+  wrap_angle_deg: ['Angle wrapped around the object', '°'],
+  curvature_match: ['Match of body and object in curvature', ''],
   cai_rad_per_m_kPa: ['Curvature per pressure', 'rad/(m·kPa)'],
   r_squared: ['R² of the fit', ''],
   intercept_deg: ['Intercept of the straight line', '°'],
@@ -26,15 +38,15 @@ const NAMES = {
 };
 
 // What people look for first; everything else follows in the order of the alphabet.
-const FIRST = ['bending_angle_deg', 'sensitivity_deg_per_kPa', 'r_squared', 'intercept_deg',
-  'cai_rad_per_m_kPa', 'tip_deflection_mm', 'end_face_angle_deg', 'chord_angle_deg',
+const FIRST = ['grasp_force_peak_N', 'grasp_force_mean_N', 'blocked_force_N', 'bending_angle_deg',
+  'sensitivity_deg_per_kPa', 'r_squared', 'intercept_deg', 'cai_rad_per_m_kPa', 'tip_deflection_mm', 'end_face_angle_deg', 'chord_angle_deg',
   'contact_onset_kPa', 'max_stretch', 'min_gap_mm', 'max_penetration_mm', 'cavity_volume_mm3',
   'mass_g'];
 
 // Longest endings first: the first that fits is the unit.
 const UNITS = [
-  ['_deg_per_kPa', '°/kPa'], ['_m_s', 'm/s'], ['_mm3', 'mm³'], ['_MPa', 'MPa'], ['_kPa', 'kPa'], ['_deg', '°'],
-  ['_pct', '%'], ['_mm', 'mm'], ['_Pa', 'Pa'], ['_MB', 'MB'], ['_ms', 'ms'], ['_N', 'N'],
+  ['_deg_per_kPa', '°/kPa'], ['_m_s', 'm/s'], ['_mm3', 'mm³'], ['_mm2', 'mm²'], ['_N_mm', 'N mm'], ['_MPa', 'MPa'],
+  ['_kPa', 'kPa'], ['_deg', '°'], ['_pct', '%'], ['_mm', 'mm'], ['_mJ', 'mJ'], ['_Pa', 'Pa'], ['_MB', 'MB'], ['_ms', 'ms'], ['_N', 'N'],
   ['_g', 'g'], ['_s', 's'], ['_m', 'm'],
 ];
 

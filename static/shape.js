@@ -1,4 +1,5 @@
-// The view of the deformed body on the page of a job: pressure, colours and the side it is seen from.
+// The view of the deformed body, or of a grasp, on the page of a job: where it is on its way, colours and
+// the side it is seen from.
 
 import { Body, fitRenderer, makeRenderer } from './body.js';
 import { Camera } from './camera.js';
@@ -13,14 +14,13 @@ export const FIELDS = {
   contact_pressure: 'Contact pressure',
 };
 
-const PLAY_MS = 3000;
 const stillness = window.matchMedia('(prefers-reduced-motion: reduce)');
 
-function withUnit(value, unit) {
+export function withUnit(value, unit) {
   return unit ? `${number(value)}\u00a0${unit}` : number(value);
 }
 
-function short(value) {
+export function short(value) {
   return Number(value.toPrecision(3));
 }
 
@@ -45,52 +45,94 @@ export function showLegend(element, field, [low, high]) {
   element.querySelector('.legend-ticks').replaceChildren(...ticks.map((text) => make('span', {}, text)));
 }
 
-class ShapeView {
-  constructor(section, surface, canvas, renderer) {
-    this.canvas = canvas;
+// A body under a load that rises: what the view shows of a response. Of a grasp that is a Grasp.
+class Load {
+  constructor(surface) {
     this.surface = surface;
+    this.body = new Body(surface);
+    this.positions = surface.positions;
+    this.fields = surface.fields;
+    this.moments = []; // places to jump to: { name, position }
+    this.label = 'Pressure';
+    this.toggle = 'Body at rest';
+    this.playMs = 3000;
+  }
+
+  // Where the slider is.
+  text(position) {
+    return withUnit(short(position), 'kPa');
+  }
+
+  // The same for whoever cannot see it.
+  sentence(position) {
+    return `Deformed body at ${this.text(position)}`;
+  }
+
+  // Takes a position, and gives the range of the colours.
+  set(position, field) {
+    const range = this.surface.rangeOf(field);
+    this.body.set(position, field, range);
+    return range;
+  }
+
+  box() {
+    return this.body.box();
+  }
+
+  draw(renderer, camera, [width, height], toggled) {
+    this.body.ghost.visible = toggled;
+    this.body.draw(renderer, camera, width, height);
+  }
+}
+
+class ShapeView {
+  constructor(section, subject, canvas, renderer) {
+    this.canvas = canvas;
+    this.subject = subject;
     this.section = section;
-    this.pressure = surface.pressures.at(-1);
-    this.field = surface.fields[0];
+    this.first = subject.positions[0];
+    this.last = subject.positions.at(-1);
+    this.position = subject.start ?? this.last;
+    this.field = subject.fields[0];
     this.frame = 0;
     this.build();
     this.renderer = renderer;
-    this.body = new Body(surface);
     this.camera = new Camera(() => this.draw());
     this.camera.attach(this.canvas);
     this.camera.camera.aspect = this.canvas.clientWidth / this.canvas.clientHeight || 4 / 3;
-    this.camera.frame(this.body.box());
+    this.camera.frame(subject.box());
     this.readAddress();
     this.change();
     new ResizeObserver(() => this.draw()).observe(this.canvas);
-    dark.addEventListener('change', () => this.draw());
+    dark.addEventListener('change', () => this.change());
   }
 
   build() {
-    const { pressures, fields } = this.surface;
+    const { positions, fields, moments, label, toggle } = this.subject;
     this.slider = make('input', { type: 'range', id: 'shape-pressure', min: 0, max: 1000, step: 1,
       list: 'shape-states', autocomplete: 'off' });
-    const [first, last] = [pressures[0], pressures.at(-1)];
-    const marks = make('datalist', { id: 'shape-states' }, ...pressures.map((p) =>
-      make('option', { value: Math.round(1000 * (p - first) / (last - first || 1)) })));
+    const marks = make('datalist', { id: 'shape-states' }, ...positions.map((p) =>
+      make('option', { value: this.share(p) })));
     this.output = make('output', { for: 'shape-pressure', id: 'shape-value' });
     this.select = make('select', { id: 'shape-field', autocomplete: 'off' }, ...fields.map(({ name, low, high }, i) =>
       make('option', { value: name, disabled: i > 0 && high <= low }, FIELDS[name] || name)));
-    this.ghost = make('input', { type: 'checkbox', id: 'shape-ghost', autocomplete: 'off' });
-    this.ghost.checked = true;
+    this.toggled = make('input', { type: 'checkbox', id: 'shape-ghost', autocomplete: 'off' });
+    this.toggled.checked = true;
     const button = (label, act) => {
       const element = make('button', { type: 'button' }, label);
       element.addEventListener('click', act);
       return element;
     };
     this.play = button('Play', () => this.togglePlay());
-    this.slider.disabled = last <= first;
-    this.play.disabled = last <= first;
+    this.slider.disabled = this.last <= this.first;
+    this.play.disabled = this.last <= this.first;
+    const jumps = moments.map(({ name, position }) => button(name, () => this.go(position)));
     this.section.querySelector('.shape-tools').replaceChildren(
-      make('div', { class: 'shape-row' }, make('label', { for: 'shape-pressure' }, 'Pressure'), this.slider, marks,
+      make('div', { class: 'shape-row' }, make('label', { for: 'shape-pressure' }, label), this.slider, marks,
         this.output, this.play),
+      jumps.length > 0 && make('div', { class: 'shape-row', role: 'group', 'aria-label': 'Moments' }, 'Go to', ...jumps),
       make('div', { class: 'shape-row' }, make('label', { for: 'shape-field' }, 'Colour by'), this.select,
-        make('label', { class: 'inline' }, this.ghost, 'Body at rest'),
+        make('label', { class: 'inline' }, this.toggled, toggle),
         make('span', { class: 'push' }, button('Reset view', () => this.camera.reset()),
           button('Save picture', () => this.save()))),
       make('p', { class: 'muted hint', id: 'shape-help' },
@@ -99,25 +141,33 @@ class ShapeView {
     const figure = this.section.querySelector('figure');
     figure.replaceChildren(this.canvas, this.legend);
     this.slider.addEventListener('input', () => {
-      this.stop();
-      this.pressure = first + (last - first) * this.slider.valueAsNumber / 1000;
-      this.change();
+      this.go(this.first + (this.last - this.first) * this.slider.valueAsNumber / 1000);
     });
     this.select.addEventListener('change', () => {
       this.field = fields.find(({ name }) => name === this.select.value);
       this.change();
     });
-    this.ghost.addEventListener('change', () => this.draw());
+    this.toggled.addEventListener('change', () => this.draw());
   }
 
   // ---- state of the view, also in the address -----------------------------------------------
 
+  // Where the slider stands at a position.
+  share(position) {
+    return Math.round(1000 * (position - this.first) / (this.last - this.first || 1));
+  }
+
+  go(position) {
+    this.stop();
+    this.position = position;
+    this.change();
+  }
+
   readAddress() {
-    const [pressure, name] = decodeURIComponent(window.location.hash).replace('#shape=', '').split(',');
-    const field = this.surface.fields.find((one) => one.name === name);
-    if (field && Number.isFinite(Number(pressure))) {
-      const [first, last] = [this.surface.pressures[0], this.surface.pressures.at(-1)];
-      this.pressure = Math.min(Math.max(Number(pressure), first), last);
+    const [position, name] = decodeURIComponent(window.location.hash).replace('#shape=', '').split(',');
+    const field = this.subject.fields.find((one) => one.name === name);
+    if (field && Number.isFinite(Number(position))) {
+      this.position = Math.min(Math.max(Number(position), this.first), this.last);
       this.field = field;
       this.select.value = name;
     }
@@ -126,23 +176,21 @@ class ShapeView {
   writeAddress() {
     clearTimeout(this.later);
     this.later = setTimeout(() => {
-      window.history.replaceState(null, '', `#shape=${short(this.pressure)},${this.field.name}`);
+      window.history.replaceState(null, '', `#shape=${short(this.position)},${this.field.name}`);
     }, 300);
   }
 
   change() {
-    const [first, last] = [this.surface.pressures[0], this.surface.pressures.at(-1)];
-    const text = withUnit(short(this.pressure), 'kPa');
-    this.range = this.surface.rangeOf(this.field);
-    this.body.set(this.pressure, this.field, this.range);
-    this.slider.value = Math.round(1000 * (this.pressure - first) / (last - first || 1));
+    const { subject, field } = this;
+    const text = subject.text(this.position);
+    const range = subject.set(this.position, field);
+    this.slider.value = this.share(this.position);
     this.slider.setAttribute('aria-valuetext', text);
     setText(this.output, text);
-    showLegend(this.legend, this.field, this.range);
-    const [low, high] = this.range;
-    this.canvas.setAttribute('aria-label', `Deformed body at ${text}, coloured by `
-      + `${(FIELDS[this.field.name] || this.field.name).toLowerCase()} from ${withUnit(short(low), this.field.unit)} `
-      + `to ${withUnit(short(high), this.field.unit)}`);
+    showLegend(this.legend, field, range);
+    const [low, high] = range.map((value) => withUnit(short(value), field.unit));
+    this.canvas.setAttribute('aria-label', `${subject.sentence(this.position)}, coloured by `
+      + `${(FIELDS[field.name] || field.name).toLowerCase()} from ${low} to ${high}`);
     if (this.touched) {
       this.writeAddress();
     }
@@ -153,7 +201,7 @@ class ShapeView {
   // ---- drawing ------------------------------------------------------------------------------
 
   draw() {
-    if (!this.frame && this.body && this.camera) {
+    if (!this.frame && this.camera) {
       this.frame = requestAnimationFrame(() => {
         this.frame = 0;
         this.drawNow();
@@ -164,9 +212,8 @@ class ShapeView {
 
   drawNow() {
     const [width, height] = fitRenderer(this.renderer);
-    this.body.ghost.visible = this.ghost.checked;
     if (width > 0 && height > 0) {
-      this.body.draw(this.renderer, this.camera.camera, width, height);
+      this.subject.draw(this.renderer, this.camera.camera, [width, height], this.toggled.checked);
     }
   }
 
@@ -180,7 +227,7 @@ class ShapeView {
     });
   }
 
-  // ---- the load as it rises -----------------------------------------------------------------
+  // ---- all of it, from the first to the last state ------------------------------------------
 
   stop() {
     cancelAnimationFrame(this.playing);
@@ -195,23 +242,23 @@ class ShapeView {
       this.stop();
       return;
     }
-    const { pressures } = this.surface;
+    const { positions, playMs } = this.subject;
     setText(this.play, 'Stop');
     if (stillness.matches) { // state by state, nothing moves in between
       let state = 0;
       this.stepping = setInterval(() => {
-        this.pressure = pressures[state++];
+        this.position = positions[state++];
         this.change();
-        if (state === pressures.length) {
+        if (state === positions.length) {
           this.stop();
         }
-      }, 700);
+      }, Math.min(700, Math.max(150, playMs / positions.length)));
       return;
     }
     const start = performance.now();
     const step = (now) => {
-      const share = Math.min((now - start) / PLAY_MS, 1);
-      this.pressure = pressures[0] + share * (pressures.at(-1) - pressures[0]);
+      const share = Math.min((now - start) / playMs, 1);
+      this.position = this.first + share * (this.last - this.first);
       this.change();
       if (share < 1) {
         this.playing = requestAnimationFrame(step);
@@ -221,6 +268,14 @@ class ShapeView {
     };
     this.playing = requestAnimationFrame(step);
   }
+}
+
+async function loadSubject({ surface, frames }) {
+  if (frames) {
+    const { loadGrasp } = await import('./grasp.js');
+    return loadGrasp(frames);
+  }
+  return new Load(await loadSurface(surface));
 }
 
 // Turns the picture in a section into a view. Where that cannot be, the picture stays.
@@ -233,7 +288,7 @@ export async function setUpShape(section) {
     const canvas = make('canvas', { class: 'shape-canvas', role: 'img', id: 'shape-canvas',
       'aria-describedby': 'shape-help' });
     const renderer = makeRenderer(canvas);
-    new ShapeView(section, await loadSurface(section.dataset.surface), canvas, renderer);
+    new ShapeView(section, await loadSubject(section.dataset), canvas, renderer);
     section.dataset.ready = 'yes';
   } catch (problem) {
     section.dataset.ready = 'no';

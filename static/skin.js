@@ -56,6 +56,9 @@ function creases(quads, points, normals) {
   const lines = [];
   for (let k = 0; k < quads.length; k++) {
     const a = quads[k], b = quads[(k & ~3) + ((k + 1) & 3)];
+    if (a === b) {
+      continue; // the last two corners of a triangle
+    }
     const key = a < b ? a * points + b : b * points + a;
     const other = edges.get(key);
     if (other === undefined) {
@@ -73,6 +76,51 @@ function creases(quads, points, normals) {
   return Uint32Array.from(lines);
 }
 
+// Triangles of quadrilaterals, by their vertices.
+function trianglesOf(vertexOf) {
+  const triangles = new Uint32Array(vertexOf.length / 4 * 6);
+  for (let q = 0, t = 0; q < vertexOf.length; q += 4, t += 6) {
+    const v = vertexOf;
+    triangles.set([v[q], v[q + 1], v[q + 2], v[q], v[q + 2], v[q + 3]], t);
+  }
+  return triangles;
+}
+
+// Normals of the vertices: of the faces around each, weighted by area.
+function shade(vertexOf, faces, normal) {
+  normal.fill(0);
+  for (let k = 0; k < vertexOf.length; k++) {
+    const v = 3 * vertexOf[k], n = 3 * (k >> 2);
+    normal[v] += faces[n];
+    normal[v + 1] += faces[n + 1];
+    normal[v + 2] += faces[n + 2];
+  }
+  for (let v = 0; v < normal.length; v += 3) {
+    const length = Math.hypot(normal[v], normal[v + 1], normal[v + 2]) || 1;
+    normal[v] /= length;
+    normal[v + 1] /= length;
+    normal[v + 2] /= length;
+  }
+}
+
+// The geometry of something that keeps its shape: { body, edges }.
+export function stillGeometry(quads, place) {
+  const faces = new Float32Array(3 * quads.length / 4);
+  faceNormals(quads, place, faces);
+  const { pointOf, vertexOf } = split(quads, place.length / 3, faces);
+  const positions = new Float32Array(3 * pointOf.length);
+  const normals = new Float32Array(3 * pointOf.length);
+  pointOf.forEach((p, v) => positions.set(place.subarray(3 * p, 3 * p + 3), 3 * v));
+  shade(vertexOf, faces, normals);
+  return {
+    body: new BufferGeometry().setIndex(new BufferAttribute(trianglesOf(vertexOf), 1))
+      .setAttribute('position', new BufferAttribute(positions, 3))
+      .setAttribute('normal', new BufferAttribute(normals, 3)),
+    edges: new BufferGeometry().setIndex(new BufferAttribute(creases(quads, place.length / 3, faces), 1))
+      .setAttribute('position', new BufferAttribute(place, 3)),
+  };
+}
+
 export class Skin {
   constructor(surface) {
     const { quads, points } = surface;
@@ -80,17 +128,12 @@ export class Skin {
     this.place = new Float32Array(3 * points);
     this.value = new Float32Array(points);
     this.faces = new Float32Array(3 * quads.length / 4);
-    this.move(surface.pressures[0]);
+    this.move(surface.positions[0]);
     faceNormals(quads, this.place, this.faces);
     Object.assign(this, split(quads, points, this.faces));
-    const triangles = new Uint32Array(6 * quads.length / 4);
-    for (let q = 0, t = 0; q < quads.length; q += 4, t += 6) {
-      const v = this.vertexOf;
-      triangles.set([v[q], v[q + 1], v[q + 2], v[q], v[q + 2], v[q + 3]], t);
-    }
     const vertices = this.pointOf.length;
     this.body = new BufferGeometry();
-    this.body.setIndex(new BufferAttribute(triangles, 1));
+    this.body.setIndex(new BufferAttribute(trianglesOf(this.vertexOf), 1));
     for (const name of ['position', 'normal', 'color']) {
       this.body.setAttribute(name, new BufferAttribute(new Float32Array(3 * vertices), 3));
     }
@@ -101,45 +144,27 @@ export class Skin {
       .setAttribute('position', new BufferAttribute(this.place, 3));
   }
 
-  move(pressure) {
-    this.surface.places.forEach((channel, i) => this.surface.fill(channel, pressure, this.place, i, 3));
+  move(position) {
+    this.surface.places.forEach((channel, i) => this.surface.fill(channel, position, this.place, i, 3));
   }
 
-  // Normals of the vertices: of the faces around each, weighted by area.
-  shade(normal) {
-    const { vertexOf, faces } = this;
-    faceNormals(this.surface.quads, this.place, faces);
-    normal.fill(0);
-    for (let k = 0; k < vertexOf.length; k++) {
-      const v = 3 * vertexOf[k], n = 3 * (k >> 2);
-      normal[v] += faces[n];
-      normal[v + 1] += faces[n + 1];
-      normal[v + 2] += faces[n + 2];
-    }
-    for (let v = 0; v < normal.length; v += 3) {
-      const length = Math.hypot(normal[v], normal[v + 1], normal[v + 2]) || 1;
-      normal[v] /= length;
-      normal[v + 1] /= length;
-      normal[v + 2] /= length;
-    }
-  }
-
-  // Puts the body into its shape at a pressure, coloured by a field from low to high.
-  set(pressure, field, [low, high], shades) {
-    const { position, normal, color } = this.body.attributes;
-    this.move(pressure);
-    this.surface.fill(field, pressure, this.value);
-    this.shade(normal.array);
+  // Puts the body into its shape at a position, coloured by a field from low to high.
+  set(position, field, [low, high], shades) {
+    const { position: vertices, normal, color } = this.body.attributes;
+    this.move(position);
+    this.surface.fill(field, position, this.value);
+    faceNormals(this.surface.quads, this.place, this.faces);
+    shade(this.vertexOf, this.faces, normal.array);
     const scale = high > low ? 255 / (high - low) : 0;
     for (let v = 0; v < this.pointOf.length; v++) {
       const p = this.pointOf[v];
-      const shade = 3 * Math.round(Math.min(Math.max((this.value[p] - low) * scale, 0), 255));
+      const at = 3 * Math.round(Math.min(Math.max((this.value[p] - low) * scale, 0), 255));
       for (let i = 0; i < 3; i++) {
-        position.array[3 * v + i] = this.place[3 * p + i];
-        color.array[3 * v + i] = shades[shade + i];
+        vertices.array[3 * v + i] = this.place[3 * p + i];
+        color.array[3 * v + i] = shades[at + i];
       }
     }
-    for (const attribute of [position, normal, color, this.edges.attributes.position]) {
+    for (const attribute of [vertices, normal, color, this.edges.attributes.position]) {
       attribute.needsUpdate = true;
     }
   }

@@ -4,7 +4,7 @@
 import { post, request } from './api.js';
 import { find, make } from './dom.js';
 import { Editor } from './editor.js';
-import { example } from './example.js';
+import { finger, grasp } from './example.js';
 import { Fields } from './fields.js';
 import { remember } from './live.js';
 import { problemView } from './problem.js';
@@ -101,10 +101,12 @@ async function setUp() {
   layOut();
   find('submit-form').addEventListener('submit', submit);
   editor.area.addEventListener('input', checkSoon);
-  find('example').addEventListener('click', () => {
-    editor.text = example;
-    check();
-  });
+  for (const [id, text] of [['example', finger], ['example-grasp', grasp]]) {
+    find(id).addEventListener('click', () => {
+      editor.text = text;
+      check();
+    });
+  }
   try {
     fields = new Fields(find('fields'), await request('/api/v1/schemas/job'), (text) => {
       editor.text = text;

@@ -8,18 +8,19 @@ async function inflate(bytes) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-function readQuads(bytes, count) {
-  const corners = new Uint32Array(count);
+// Numbers of four bytes, each as its difference to the one before.
+export function readNumbers(bytes, count) {
+  const numbers = new Uint32Array(count);
   let last = 0;
   for (let k = 0; k < count; k++) {
     last += bytes[k] + (bytes[count + k] << 8) + (bytes[2 * count + k] << 16) + (bytes[3 * count + k] << 24);
-    corners[k] = last;
+    numbers[k] = last;
   }
-  return corners;
+  return numbers;
 }
 
 // The states of one channel: rows of numbers 0 to 65535.
-function readChannel(bytes, points, states) {
+function readRows(bytes, points, states) {
   const rows = [];
   for (let s = 0; s < states; s++) {
     const from = 2 * points * s;
@@ -38,40 +39,40 @@ function readChannel(bytes, points, states) {
   return rows;
 }
 
+// Places and fields of so many points in all states, and how many bytes they took: { places, fields, size }.
+export function readChannels(head, bytes, points, states) {
+  const channels = [0, 1, 2].map((i) => ({ name: 'xyz'[i], unit: 'mm', low: head.low_mm[i], high: head.high_mm[i] }))
+    .concat(head.fields.map((field) => ({ ...field })));
+  const size = 2 * points * states;
+  channels.forEach((channel, i) => {
+    channel.rows = readRows(bytes.subarray(i * size, (i + 1) * size), points, states);
+  });
+  return { places: channels.slice(0, 3), fields: channels.slice(3), size: channels.length * size };
+}
+
 export class Surface {
-  constructor(head, bytes) {
-    const states = head.pressures_kPa.length;
-    const size = 2 * head.points * states;
-    this.points = head.points;
-    this.pressures = head.pressures_kPa;
-    this.quads = readQuads(bytes, 4 * head.quads);
-    const channels = [0, 1, 2].map((i) => ({ name: 'xyz'[i], unit: 'mm', low: head.low_mm[i], high: head.high_mm[i] }))
-      .concat(head.fields);
-    channels.forEach((channel, i) => {
-      const from = 16 * head.quads + i * size;
-      channel.rows = readChannel(bytes.subarray(from, from + size), head.points, states);
-    });
-    this.places = channels.slice(0, 3);
-    this.fields = channels.slice(3);
+  // positions: where in what is played the states are, rising; of a load its pressures.
+  constructor({ points, quads, positions, places, fields }) {
+    Object.assign(this, { points, quads, positions, places, fields });
   }
 
-  // The pressure as a place between two recorded states: [state, share of the next one].
-  between(pressure) {
-    const last = this.pressures.length - 1;
+  // A position as a place between two recorded states: [state, share of the next one].
+  between(position) {
+    const last = this.positions.length - 1;
     let state = 0;
-    while (state < last - 1 && this.pressures[state + 1] <= pressure) {
+    while (state < last - 1 && this.positions[state + 1] <= position) {
       state++;
     }
     if (last === 0) {
       return [0, 0];
     }
-    const [from, to] = [this.pressures[state], this.pressures[state + 1]];
-    return [state, Math.min(Math.max((pressure - from) / (to - from), 0), 1)];
+    const [from, to] = [this.positions[state], this.positions[state + 1]];
+    return [state, Math.min(Math.max((position - from) / (to - from), 0), 1)];
   }
 
-  // Writes the values of a channel at a pressure to into[start + stride * point].
-  fill(channel, pressure, into, start = 0, stride = 1) {
-    const [state, share] = this.between(pressure);
+  // Writes the values of a channel at a position to into[start + stride * point].
+  fill(channel, position, into, start = 0, stride = 1) {
+    const [state, share] = this.between(position);
     const scale = (channel.high - channel.low) / 65535;
     const from = channel.rows[state];
     const to = channel.rows[Math.min(state + 1, channel.rows.length - 1)];
@@ -91,8 +92,8 @@ export class Surface {
   }
 }
 
-// Loads a surface; throws when there is none, or it is damaged.
-export async function loadSurface(url) {
+// Loads such a file as { head, bytes }; throws when there is none, or it is damaged.
+export async function loadPacked(url) {
   const response = await fetch(url);
   if (!response.ok) {
     throw new Error(`The surface is not there (status ${response.status}).`);
@@ -105,5 +106,13 @@ export async function loadSurface(url) {
   const length = new DataView(data).getUint32(MARK.length, true);
   const start = MARK.length + 4;
   const head = JSON.parse(new TextDecoder().decode(bytes.subarray(start, start + length)));
-  return new Surface(head, await inflate(bytes.subarray(start + length)));
+  return { head, bytes: await inflate(bytes.subarray(start + length)) };
+}
+
+export async function loadSurface(url) {
+  const { head, bytes } = await loadPacked(url);
+  const positions = head.pressures_kPa;
+  const quads = readNumbers(bytes, 4 * head.quads);
+  return new Surface({ points: head.points, quads, positions,
+    ...readChannels(head, bytes.subarray(16 * head.quads), head.points, positions.length) });
 }

@@ -190,21 +190,32 @@ static void curves_write(struct html *html, void *context) {
   html_close(html);
 }
 
-static void shape_write(struct html *html, const json_t *job) {
+/* A body that can be turned with the others, or the picture of a grasp. */
+static void shape_write(struct html *html, const json_t *job, bool grasp) {
   long long id = json_integer_value(json_object_get(job, "id"));
   const char *name = json_string_value(json_object_get(job, "name"));
   char data[PAGE_TEXT], plot[PAGE_TEXT], href[PAGE_TEXT], text[PAGE_TEXT];
   snprintf(data, sizeof data, "/api/v1/jobs/%lld/artifacts/surface.bin", id);
-  snprintf(plot, sizeof plot, "/api/v1/jobs/%lld/plots/surface.png", id);
+  snprintf(plot, sizeof plot, "/api/v1/jobs/%lld/plots/%s.png", id,
+           grasp ? "snapshots" : "surface");
   snprintf(href, sizeof href, "/jobs/%lld", id);
-  snprintf(text, sizeof text, "Deformed body of job %lld", id);
-  html_open(html, "figure", "class", "plot small-plot", "data-surface", data, NULL);
+  snprintf(text, sizeof text, grasp ? "Grasp of job %lld" : "Deformed body of job %lld", id);
+  html_open(html, "figure", "class", "plot small-plot", "data-surface", grasp ? NULL : data, NULL);
   page_picture(html, plot, text, 400, 320);
   html_open(html, "figcaption", NULL);
   html_leaf(html, "a", name[0] ? name : text, "href", href, "class", "clamp", NULL);
   html_leaf(html, "span", "", "class", "at muted", NULL);
   html_close(html);
   html_close(html);
+}
+
+static size_t count_kind(json_t *jobs, const char *kind) {
+  size_t index, count = 0;
+  json_t *job;
+  json_array_foreach(jobs, index, job) {
+    count += strcmp(json_string_value(json_object_get(job, "kind")), kind) == 0;
+  }
+  return count;
 }
 
 static void shapes_write(struct html *html, void *context) {
@@ -214,15 +225,21 @@ static void shapes_write(struct html *html, void *context) {
   if (!page->view) {
     return;
   }
+  json_t *jobs = json_object_get(page->view, "jobs");
+  size_t bodies = count_kind(jobs, "response"), grasps = count_kind(jobs, "grasp");
   html_open(html, "section", "class", "card", "id", "shapes", "aria-labelledby", "shapes-title",
             NULL);
-  html_leaf(html, "h2", "Deformed bodies", "id", "shapes-title", NULL);
-  html_leaf(html, "div", "", "class", "bodies-tools scripted", NULL);
+  html_leaf(html, "h2", bodies || !grasps ? "Deformed bodies" : "Grasps", "id", "shapes-title",
+            NULL);
+  if (bodies || !grasps) {
+    html_leaf(html, "div", "", "class", "bodies-tools scripted", NULL);
+  }
   html_open(html, "div", "class", "small-plots", NULL);
-  json_array_foreach(json_object_get(page->view, "jobs"), index, job) {
+  json_array_foreach(jobs, index, job) {
     const char *kind = json_string_value(json_object_get(job, "kind"));
-    if (strcmp(kind, "response") == 0) {
-      shape_write(html, job);
+    bool grasp = strcmp(kind, "grasp") == 0;
+    if (grasp || strcmp(kind, "response") == 0) {
+      shape_write(html, job, grasp);
     }
   }
   html_close(html);

@@ -100,8 +100,20 @@ static void progress_write(struct html *html, const struct index *page,
   html_leaf(html, "progress", "", "max", "1", "value", text, "aria-label", label, NULL);
 }
 
+/* The figure that tells most of a job: a force of a grasp, else the angle. "" when it has none. */
+static void figure_of(const struct job_record *job, char text[PAGE_TEXT]) {
+  static const char *const keys[] = {"grasp_force_peak_N", "blocked_force_N", "bending_angle_deg"};
+  text[0] = '\0';
+  for (size_t i = 0; i < sizeof keys / sizeof *keys && !text[0]; i++) {
+    const json_t *value = json_object_get(job->metrics, keys[i]);
+    if (json_is_number(value)) {
+      page_quantity(keys[i], json_number_value(value), text);
+    }
+  }
+}
+
 static void state_write(struct html *html, const struct index *page, const struct job_record *job,
-                        const char *angle) {
+                        const char *figure) {
   char word[PAGE_TEXT];
   html_open(html, "td", NULL);
   page_state(html, job->state, NULL);
@@ -109,14 +121,13 @@ static void state_write(struct html *html, const struct index *page, const struc
     page_word(job->reason_code, word);
     html_leaf(html, "span", word, "class", "why", NULL);
   }
-  html_leaf(html, "span", angle, "class", "narrow", NULL);
+  html_leaf(html, "span", figure, "class", "narrow", NULL);
   progress_write(html, page, job);
   html_close(html);
 }
 
-static void box_write(struct html *html, const struct job_record *job) {
+static void box_write(struct html *html, const struct job_record *job, bool can) {
   char id[PAGE_TEXT], box[PAGE_TEXT], name[PAGE_TEXT], label[PAGE_TEXT];
-  bool can = json_object_get(job->metrics, "bending_angle_deg") && strcmp(job->kind, "study") != 0;
   snprintf(id, sizeof id, "%lld", (long long)job->id);
   snprintf(box, sizeof box, "pick-%lld", (long long)job->id);
   snprintf(name, sizeof name, "job.%lld", (long long)job->id);
@@ -128,17 +139,14 @@ static void box_write(struct html *html, const struct job_record *job) {
 }
 
 static void job_write(struct html *html, const struct index *page, const struct job_record *job) {
-  char id[PAGE_TEXT], href[PAGE_TEXT], name[PAGE_TEXT], angle[PAGE_TEXT] = "";
-  const json_t *value = json_object_get(job->metrics, "bending_angle_deg");
+  char id[PAGE_TEXT], href[PAGE_TEXT], name[PAGE_TEXT], figure[PAGE_TEXT];
   bool study = strcmp(job->kind, "study") == 0;
   snprintf(id, sizeof id, "%lld", (long long)job->id);
   snprintf(href, sizeof href, "/%s/%lld", study ? "studies" : "jobs", (long long)job->id);
   snprintf(name, sizeof name, "job %lld", (long long)job->id);
-  if (json_is_number(value)) {
-    page_quantity("bending_angle_deg", json_number_value(value), angle);
-  }
+  figure_of(job, figure);
   html_open(html, "tr", "data-id", id, "id", href + 1, NULL);
-  box_write(html, job);
+  box_write(html, job, figure[0] && !study);
   html_leaf(html, "td", id, "class", "number", NULL);
   html_open(html, "td", "class", "name", NULL);
   html_leaf(html, "a", job->name[0] ? job->name : name, "href", href, "class", "clamp", "title",
@@ -146,8 +154,8 @@ static void job_write(struct html *html, const struct index *page, const struct 
   labels_write(html, job->labels);
   html_close(html);
   html_leaf(html, "td", job->kind, "class", "wide", NULL);
-  state_write(html, page, job, angle);
-  html_leaf(html, "td", angle[0] ? angle : "–", "class", "number wide", NULL);
+  state_write(html, page, job, figure);
+  html_leaf(html, "td", figure[0] ? figure : "–", "class", "number wide", NULL);
   html_open(html, "td", "class", "wide", NULL);
   page_time(html, job->created_ms, page->now);
   html_close(html);

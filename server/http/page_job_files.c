@@ -41,6 +41,11 @@ static const char *caption_of(const char *plot) {
       {"held", "Force at the natural length against pressure"},
       {"stability", "Loss of axisymmetry by harmonic"},
       {"suction", "Suction and bending against the number of suckers"},
+      {"force", "Grasp force against displacement"},
+      {"pressure", "Force on the object against pressure"},
+      {"snapshots", "The grasp at its moments, coloured by contact pressure"},
+      {"contact", "Contact pressure on the unrolled body"},
+      {"stages", "Force, pressure and contact area from stage to stage"},
   };
   for (size_t i = 0; i < sizeof captions / sizeof *captions; i++) {
     if (strcmp(captions[i][0], plot) == 0) {
@@ -59,23 +64,41 @@ static bool has_artifact(const struct job_page *page, const char *name) {
   return false;
 }
 
-static bool has_view(const struct job_page *page) {
-  return has_artifact(page, "surface.bin") && page->result;
+/* What the view on a page is made from, and the picture in its place where there is none. */
+struct view {
+  const char *artifact, *attribute; /* the file, and what tells the page of it */
+  const char *plot, *title;
+};
+
+/* NULL: there is nothing to view. */
+static const struct view *view_of(const struct job_page *page) {
+  static const struct view views[] = {
+      {"grasp.bin", "data-frames", "snapshots", "Grasp"},
+      {"surface.bin", "data-surface", "surface", "Deformed body"},
+  };
+  for (size_t i = 0; i < sizeof views / sizeof *views && page->result; i++) {
+    if (has_artifact(page, views[i].artifact)) {
+      return &views[i];
+    }
+  }
+  return NULL;
 }
 
 void job_page_shape(struct html *html, const struct job_page *page) {
   char plot[PATH], data[PATH];
-  if (!has_view(page)) {
+  const struct view *view = view_of(page);
+  if (!view) {
     return;
   }
-  snprintf(plot, sizeof plot, "/api/v1/jobs/%lld/plots/surface.png", (long long)page->record.id);
-  snprintf(data, sizeof data, "/api/v1/jobs/%lld/artifacts/surface.bin",
-           (long long)page->record.id);
+  snprintf(plot, sizeof plot, "/api/v1/jobs/%lld/plots/%s.png", (long long)page->record.id,
+           view->plot);
+  snprintf(data, sizeof data, "/api/v1/jobs/%lld/artifacts/%s", (long long)page->record.id,
+           view->artifact);
   html_open(html, "section", "class", "card", "id", "shape", "aria-labelledby", "shape-title",
-            "data-surface", data, NULL);
-  html_leaf(html, "h2", "Deformed body", "id", "shape-title", NULL);
+            view->attribute, data, NULL);
+  html_leaf(html, "h2", view->title, "id", "shape-title", NULL);
   html_open(html, "figure", "class", "shape plot", NULL);
-  page_picture(html, plot, caption_of("surface"), 800, 600);
+  page_picture(html, plot, caption_of(view->plot), 800, 600);
   html_close(html);
   html_leaf(html, "div", "", "class", "shape-tools scripted", NULL);
   html_close(html);
@@ -83,12 +106,13 @@ void job_page_shape(struct html *html, const struct job_page *page) {
 
 void job_page_plots(struct html *html, const struct job_page *page) {
   json_t *plots = json_object_get(json_object_get(page->view, "links"), "plots"), *link;
+  const struct view *view = view_of(page);
   size_t index, shown = 0;
   char name[PATH];
   json_array_foreach(plots, index, link) {
     const char *url = json_string_value(link), *last = strrchr(url, '/');
     snprintf(name, sizeof name, "%.*s", (int)strcspn(last + 1, "."), last + 1);
-    if (strcmp(name, "surface") == 0 && has_view(page)) {
+    if (view && strcmp(name, "surface") == 0) {
       continue;
     }
     if (shown++ == 0) {

@@ -178,8 +178,12 @@ static void sample_write(struct html *html, json_t *columns, const json_t *sampl
   html_open(html, "tr", NULL);
   json_object_foreach(columns, key, ignored) {
     const json_t *value = json_object_get(sample, key);
-    page_number(json_is_number(value) ? json_number_value(value) : NAN, text);
-    html_leaf(html, "td", text, "class", "number", NULL);
+    if (json_is_string(value)) {
+      html_leaf(html, "td", json_string_value(value), NULL);
+    } else {
+      page_number(json_is_number(value) ? json_number_value(value) : NAN, text);
+      html_leaf(html, "td", text, "class", "number", NULL);
+    }
   }
   html_close(html);
   html_text(html, "\n");
@@ -206,7 +210,7 @@ void job_page_samples(struct html *html, const struct job_page *page) {
   json_t *value;
   size_t count = json_array_size(samples);
   json_object_foreach(json_array_get(samples, 0), key, value) {
-    if (json_is_number(value)) {
+    if (json_is_number(value) || strcmp(key, "stage") == 0) {
       json_object_set_new(columns, key, json_true());
     }
   }

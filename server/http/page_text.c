@@ -67,6 +67,18 @@ void page_number(double value, char text[PAGE_TEXT]) {
 static const struct {
   const char *key, *label; /* NULL: as of every quantity */
 } known[] = {
+    {"grasp_force_peak_N", "Grasp force, peak"},
+    {"grasp_force_mean_N", "Grasp force, mean in contact"},
+    {"blocked_force_N", NULL},
+    {"grasp_force_peak_at_mm", "Peak after"},
+    {"slip_onset_mm", "Slips from"},
+    {"released_at_mm", "Lets go at"},
+    {"normal_force_N", "Sum of the normal forces"},
+    {"contact_area_mm2", NULL},
+    {"contact_pressure_max_kPa", "Largest contact pressure"},
+    {"contact_pressure_uniformity", "Evenness of the contact pressure"},
+    {"wrap_angle_deg", "Angle wrapped around the object"},
+    {"curvature_match", "Match of body and object in curvature"},
     {"bending_angle_deg", NULL},
     {"sensitivity_deg_per_kPa", "Sensitivity"},
     {"r_squared", "R² of the straight line"},
@@ -92,6 +104,12 @@ static const struct {
 static const struct {
   const char *key, *label;
 } named[] = {
+    {"friction_work_mJ", "Work of friction"},
+    {"pull_work_mJ", "Work of the pull"},
+    {"energy_error_pct", "Error of the energy balance"},
+    {"dynamic_share_pct", "Share followed in motion"},
+    {"displacement_mm", "Displacement of the object"},
+    {"slip_share", "Share that slips"},
     {"reach_mm", "Distance from base to tip"},
     {"contraction_pct", "Loss of reach"},
     {"max_von_mises_kPa", "Largest von Mises stress"},

@@ -25,6 +25,8 @@ enum colour_role {
   COLOUR_BODY,      /* a body without a quantity */
   COLOUR_OUTLINE,   /* edges of a body */
   COLOUR_SOFT,      /* silicone in a section */
+  COLOUR_BARE,      /* a body where nothing touches it */
+  COLOUR_OBJECT,    /* what a gripper holds */
   COLOUR_SERIES,    /* the first of COLOUR_SERIES_COUNT curves */
   COLOUR_ROLES = COLOUR_SERIES + COLOUR_SERIES_COUNT,
   COLOUR_MAP_AREA = COLOUR_ROLES, /* a place on a map */

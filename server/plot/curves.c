@@ -4,7 +4,9 @@
 
 #include "server/plot/draw.h"
 #include "server/plot/extension.h"
+#include "server/plot/grasp.h"
 #include "server/plot/members.h"
+#include "server/plot/profile.h"
 #include "server/plot/quantity.h"
 
 /* A quantity of the samples that is drawn against pressure, a curve a member. */
@@ -192,21 +194,41 @@ static size_t find_bistable(const struct members *members,
   return count;
 }
 
+/* The members that are grasps, in the same way. */
+static size_t find_grasps(const struct members *members,
+                          struct profile_source sources[DRAW_OVERLAY_LIMIT]) {
+  size_t count = 0;
+  for (size_t i = 0; i < members->count && count < DRAW_OVERLAY_LIMIT; i++) {
+    const struct member *member = &members->list[i];
+    if (grasp_is_of(member->object)) {
+      sources[count++] = (struct profile_source){member->object, member->name};
+    }
+  }
+  return count;
+}
+
 enum status draw_curves(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                         struct error *error) {
   static const struct subject subject = {"bending_angle_deg", "Bending angle against pressure",
                                          true};
   struct extension_source sources[DRAW_OVERLAY_LIMIT];
+  struct profile_source grasps[DRAW_OVERLAY_LIMIT];
   struct members members;
   char subtitle[DATA_HEADING], notice[DATA_HEADING];
   enum status status = members_read(inputs[0].result, &members, error);
   size_t bistable = status == STATUS_OK ? find_bistable(&members, sources) : 0;
+  size_t grasp = status == STATUS_OK ? find_grasps(&members, grasps) : 0;
   (void)count;
-  if (bistable > 0) {
+  if (bistable + grasp > 0) {
     members_subtitle(&inputs[0], members.count, subtitle);
     members_notice(&members, notice);
+  }
+  if (bistable > 0) {
     status = extension_draw(canvas, sources, bistable,
                             &(struct extension_heading){subtitle, notice}, error);
+  } else if (grasp > 0) {
+    status =
+        profile_draw(canvas, grasps, grasp, &(struct profile_heading){subtitle, notice}, error);
   } else if (status == STATUS_OK) {
     status = draw_family(canvas, inputs, &subject, error);
   }

@@ -77,7 +77,7 @@ enum status draw_stability(struct canvas *canvas, const struct plot_input *input
                            struct error *error);
 
 /* Bending angle against pressure of the members of a study, with sensitivities and R²; of bistable
- * actuators extension and force. */
+ * actuators extension and force, of grasps force against displacement. */
 enum status draw_curves(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                         struct error *error);
 /* Contraction of the reach against pressure of the members of a study. */
@@ -109,7 +109,24 @@ enum status draw_fit(struct canvas *canvas, const struct plot_input *inputs, siz
 enum status draw_stress(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                         struct error *error);
 
-/* Bending angle against pressure of several jobs; of bistable actuators extension and force. */
+/* Force on a grasped object against its displacement, with peak, mean and what is dynamic. */
+enum status draw_force(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                       struct error *error);
+/* Force on an object, or of a blocked tip, while the pressure rises. */
+enum status draw_press(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                       struct error *error);
+/* Force, pressure and contact area of a grasp through its stages. */
+enum status draw_stages(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                        struct error *error);
+/* A grasp at its moments, from moments.bin, coloured by contact pressure. */
+enum status draw_snapshots(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                           struct error *error);
+/* Contact pressure on the unrolled surface of the body, from moments.bin. */
+enum status draw_contact_map(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                             struct error *error);
+
+/* Bending angle against pressure of several jobs; of bistable actuators extension and force, of
+ * grasps force against displacement. */
 enum status draw_overlay(struct canvas *canvas, const struct plot_input *inputs, size_t count,
                          struct error *error);
 

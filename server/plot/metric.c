@@ -45,17 +45,17 @@ static bool varies_pressure(const json_t *result) {
 }
 
 const char *metric_choose(const json_t *result, const char *asked) {
-  static const char *const usual[] = {"sensitivity_deg_per_kPa", "bending_angle_deg",
-                                      "twist_angle_deg",         "contraction_pct",
-                                      "trigger_pressure_kPa",    "extension_ratio"};
-  enum { USUAL = sizeof usual / sizeof *usual };
+  static const char *const usual[] = {
+      "grasp_force_peak_N", "blocked_force_N", "sensitivity_deg_per_kPa", "bending_angle_deg",
+      "twist_angle_deg",    "contraction_pct", "trigger_pressure_kPa",    "extension_ratio"};
+  enum { USUAL = sizeof usual / sizeof *usual, SENSITIVITY = 2 };
   const json_t *members = json_object_get(result, "members");
   const json_t *first = json_array_get(json_object_get(result, "published"), 0);
   const char *published = json_string_value(json_object_get(first, "metric"));
   const char *choices[1 + USUAL] = {asked ? asked : published};
   memcpy(choices + 1, usual, sizeof usual);
   if (varies_pressure(result)) {
-    choices[1] = NULL;
+    choices[1 + SENSITIVITY] = NULL;
   }
   for (size_t c = 0; c < (asked ? 1 : 1 + USUAL); c++) {
     for (size_t i = 0; choices[c] && i < json_array_size(members); i++) {

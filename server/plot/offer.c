@@ -5,12 +5,13 @@
 
 #include "server/plot/data.h"
 #include "server/plot/extension.h"
+#include "server/plot/grasp.h"
 #include "server/plot/metric.h"
 #include "server/plot/motion.h"
 #include "server/plot/ranking.h"
 
 /* What is less is round-off or the tolerance of the equilibrium. */
-static const double least_mm = 1e-3, least_deg = 0.05;
+static const double least_mm = 1e-3, least_deg = 0.05, least_N = 1e-3;
 
 /* Largest size of a number of the samples; -1 when no sample has it. */
 static double largest(const json_t *object, const char *key) {
@@ -159,4 +160,32 @@ const char *offer_suction(const struct plot_input *input) {
     }
   }
   return "no member has suckers";
+}
+
+const char *offer_pull(const struct plot_input *input) {
+  return grasp_has_stage(input->result, "pull") ? NULL : "the object was not pulled";
+}
+
+const char *offer_press(const struct plot_input *input) {
+  const json_t *samples = json_object_get(input->result, "samples");
+  double most = 0;
+  for (size_t i = 0; i < json_array_size(samples); i++) {
+    const json_t *sample = json_array_get(samples, i);
+    const char *stage = json_string_value(json_object_get(sample, "stage"));
+    if (stage && strcmp(stage, "inflation") == 0) {
+      most = fmax(most, fabs(data_number(sample, "grasp_force_N")));
+    }
+  }
+  return most > least_N ? NULL : "the body did not press on the object while it was inflated";
+}
+
+const char *offer_moments(const struct plot_input *input) {
+  const json_t *artifacts = json_object_get(input->result, "artifacts");
+  for (size_t i = 0; i < json_array_size(artifacts); i++) {
+    const char *name = json_string_value(json_array_get(artifacts, i));
+    if (name && strcmp(name, "moments.bin") == 0) {
+      return NULL;
+    }
+  }
+  return "the job left no pictures of the grasp";
 }

@@ -32,6 +32,13 @@ const char *offer_held(const struct plot_input *input);
 /* A snap whose circumferential harmonics were tested. */
 const char *offer_stability(const struct plot_input *input);
 
+/* A grasp that was pulled. */
+const char *offer_pull(const struct plot_input *input);
+/* A grasp whose body pressed on the object while the pressure rose. */
+const char *offer_press(const struct plot_input *input);
+/* A grasp that left pictures of its moments. */
+const char *offer_moments(const struct plot_input *input);
+
 /* A study with a ranking. */
 const char *offer_ranking(const struct plot_input *input);
 /* A study in which some tip leaves the plane y = 0. */

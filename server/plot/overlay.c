@@ -6,6 +6,8 @@
 #include "server/plot/data.h"
 #include "server/plot/draw.h"
 #include "server/plot/extension.h"
+#include "server/plot/grasp.h"
+#include "server/plot/profile.h"
 
 struct texts {
   char name[DATA_HEADING];
@@ -28,26 +30,36 @@ static void describe(const json_t *result, char *text, size_t size) {
   }
 }
 
-/* Several bistable actuators, when that is what all of them are. */
-static bool are_bistable(const struct plot_input *inputs, size_t count) {
+/* Whether all of them are of one sort: bistable actuators, or grasps. */
+static bool are_all(bool (*is_of)(const json_t *), const struct plot_input *inputs, size_t count) {
   bool all = true;
   for (size_t i = 0; i < count; i++) {
-    all = all && extension_is_of(inputs[i].result);
+    all = all && is_of(inputs[i].result);
   }
   return all;
 }
 
 static enum status draw_bistable(struct canvas *canvas, const struct plot_input *inputs,
-                                 size_t count, struct texts *texts, struct error *error) {
+                                 size_t count, struct texts *texts, const char *subtitle,
+                                 struct error *error) {
   struct extension_source sources[DRAW_OVERLAY_LIMIT];
-  char subtitle[64];
   for (size_t i = 0; i < count; i++) {
     data_name(&inputs[i], texts[i].name);
     sources[i] = (struct extension_source){inputs[i].result, texts[i].name};
   }
-  snprintf(subtitle, sizeof subtitle, "%zu job%s", count, count == 1 ? "" : "s");
   return extension_draw(canvas, sources, count,
                         &(struct extension_heading){.subtitle = subtitle, .notice = ""}, error);
+}
+
+static enum status draw_grasps(struct canvas *canvas, const struct plot_input *inputs, size_t count,
+                               struct texts *texts, const char *subtitle, struct error *error) {
+  struct profile_source sources[DRAW_OVERLAY_LIMIT];
+  for (size_t i = 0; i < count; i++) {
+    data_name(&inputs[i], texts[i].name);
+    sources[i] = (struct profile_source){inputs[i].result, texts[i].name};
+  }
+  return profile_draw(canvas, sources, count,
+                      &(struct profile_heading){.subtitle = subtitle, .notice = ""}, error);
 }
 
 enum status draw_overlay(struct canvas *canvas, const struct plot_input *inputs, size_t count,
@@ -60,8 +72,14 @@ enum status draw_overlay(struct canvas *canvas, const struct plot_input *inputs,
     return error_set(error, STATUS_NO_MEMORY, NULL, "memory ran out for %zu curves", count);
   }
   bool stopped = false;
-  if (are_bistable(inputs, count)) {
-    status = draw_bistable(canvas, inputs, count, texts, error);
+  char subtitle[64];
+  snprintf(subtitle, sizeof subtitle, "%zu job%s", count, count == 1 ? "" : "s");
+  if (are_all(extension_is_of, inputs, count)) {
+    status = draw_bistable(canvas, inputs, count, texts, subtitle, error);
+    goto done;
+  }
+  if (are_all(grasp_is_of, inputs, count)) {
+    status = draw_grasps(canvas, inputs, count, texts, subtitle, error);
     goto done;
   }
   for (size_t i = 0; i < count; i++) {
@@ -84,9 +102,8 @@ enum status draw_overlay(struct canvas *canvas, const struct plot_input *inputs,
                               .name = texts[i].name,
                               .detail = texts[i].detail};
   }
-  char subtitle[64];
-  snprintf(subtitle, sizeof subtitle, "%zu job%s%s", count, count == 1 ? "" : "s",
-           stopped ? " · * stopped early" : "");
+  size_t used = strlen(subtitle);
+  snprintf(subtitle + used, sizeof subtitle - used, "%s", stopped ? " · * stopped early" : "");
   struct chart chart = {.title = "Bending angle against pressure",
                         .subtitle = subtitle,
                         .x_label = "Pressure (kPa)",

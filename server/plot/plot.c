@@ -51,6 +51,11 @@ static const struct entry entries[] = {
     {"snap", "bistable", draw_snap, offer_snap},
     {"motion", "snap", draw_motion, offer_motion},
     {"snap", "snap", draw_snap, offer_snap},
+    {"force", "grasp", draw_force, offer_pull},
+    {"pressure", "grasp", draw_press, offer_press},
+    {"snapshots", "grasp", draw_snapshots, offer_moments},
+    {"contact", "grasp", draw_contact_map, offer_moments},
+    {"stages", "grasp", draw_stages, NULL},
     {"overlay", NULL, draw_overlay, NULL},
 };
 
@@ -66,6 +71,7 @@ const char *const *plot_names(const char *kind) {
   static const char *const identify[] = {"coefficients", "fitted", NULL};
   static const char *const bistable[] = {"time", "phase", NULL};
   static const char *const snap[] = {"snap-path", NULL};
+  static const char *const grasp[] = {"stages", NULL};
   static const char *const none[] = {NULL};
   return !kind                                 ? none
          : strcmp(kind, "response") == 0       ? response
@@ -77,6 +83,7 @@ const char *const *plot_names(const char *kind) {
          : strcmp(kind, "identify") == 0       ? identify
          : strcmp(kind, "bistable") == 0       ? bistable
          : strcmp(kind, "snap") == 0           ? snap
+         : strcmp(kind, "grasp") == 0          ? grasp
                                                : none;
 }
 

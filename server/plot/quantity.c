@@ -10,7 +10,7 @@ struct suffix {
   const char *end, *unit;
 };
 
-/* longer ends first: "_mm" is the end of no other, "_kPa" is that of "_deg_per_kPa" */
+/* longer ends first: "_mm" is the end of "_N_mm", "_kPa" that of "_deg_per_kPa" */
 static const struct suffix suffixes[] = {
     {"_rad_per_m_kPa", "rad/(m kPa)"},
     {"_deg_per_kPa", "°/kPa"},
@@ -22,7 +22,9 @@ static const struct suffix suffixes[] = {
     {"_percent", "%"},
     {"_mm3", "mm³"},
     {"_mm2", "mm²"},
+    {"_N_mm", "N mm"},
     {"_mm", "mm"},
+    {"_mJ", "mJ"},
     {"_N", "N"},
     {"_g", "g"},
     {"_s", "s"},

@@ -3,16 +3,12 @@
 #include <errno.h>
 #include <jansson.h>
 #include <math.h>
-#include <stdio.h>
+#include <stdbool.h>
 #include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
-#include "server/base/file.h"
+#include "server/plot/artifact.h"
 #include "server/plot/data.h"
 #include "solver/job/json.h"
-
-enum { FILE_LIMIT = 64 << 20 };
 
 static enum status damaged(struct error *error, const char *what) {
   return error_set(error, STATUS_SYNTAX, NULL, "surface.json is damaged: %s", what);
@@ -22,13 +18,15 @@ static enum status no_memory(struct error *error) {
   return error_set(error, STATUS_NO_MEMORY, NULL, "memory ran out for surface.json");
 }
 
-static enum status parse(FILE *file, size_t size, json_t **root, struct error *error) {
+static enum status load(const char *directory, json_t **root, struct error *error) {
   json_error_t problem;
-  char *text = malloc(size + 1);
-  if (!text) {
-    return no_memory(error);
+  char *text;
+  size_t size;
+  enum status status =
+      artifact_read(directory, "surface.json", "the deformed body", &text, &size, error);
+  if (status != STATUS_OK) {
+    return status;
   }
-  size = fread(text, 1, size, file);
   *root = json_read(text, size, JSON_REJECT_DUPLICATES, &problem);
   bool starved = !*root && errno == ENOMEM;
   free(text);
@@ -36,28 +34,6 @@ static enum status parse(FILE *file, size_t size, json_t **root, struct error *e
     return STATUS_OK;
   }
   return starved ? no_memory(error) : damaged(error, problem.text);
-}
-
-static enum status load(const char *directory, json_t **root, struct error *error) {
-  enum status status = STATUS_OK;
-  size_t size = 0;
-  int fd = directory ? file_open_below(directory, "surface.json", &size) : -1;
-  FILE *file = fd >= 0 ? fdopen(fd, "rb") : NULL;
-  if (fd >= 0 && !file) {
-    close(fd);
-  }
-  if (!file) {
-    return error_set(error, STATUS_NOT_FOUND, NULL,
-                     "the job left no surface.json to draw the deformed body from");
-  }
-  if (size > FILE_LIMIT) {
-    status = error_set(error, STATUS_TOO_LARGE, NULL,
-                       "surface.json has %zu bytes; up to %d are drawn", size, FILE_LIMIT);
-  } else {
-    status = parse(file, size, root, error);
-  }
-  fclose(file);
-  return status;
 }
 
 static enum status read_quads(const json_t *list, struct skin *skin, struct error *error) {
@@ -128,7 +104,7 @@ static enum status read_stretch(const json_t *state, struct skin *skin, struct e
   return STATUS_OK;
 }
 
-enum status skin_read(const char *directory, struct skin *skin, struct error *error) {
+enum status plot_skin_read(const char *directory, struct skin *skin, struct error *error) {
   json_t *root = NULL;
   *skin = (struct skin){0};
   enum status status = load(directory, &root, error);
@@ -160,7 +136,7 @@ done:
   return status;
 }
 
-void skin_release(struct skin *skin) {
+void plot_skin_release(struct skin *skin) {
   free(skin->quads);
   free(skin->rest);
   free(skin->bent);

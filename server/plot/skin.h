@@ -20,10 +20,10 @@ struct skin {
   double rest_kPa, bent_kPa; /* NaN when not given */
 };
 
-/* Reads `directory`/surface.json into *skin, which skin_release frees in any case.
+/* Reads `directory`/surface.json into *skin, which plot_skin_release frees in any case.
  * Errors: STATUS_NOT_FOUND (no such file), STATUS_SYNTAX (damaged, with what is wrong),
  * STATUS_TOO_LARGE (above 64 MiB), STATUS_NO_MEMORY. */
-enum status skin_read(const char *directory, struct skin *skin, struct error *error);
-void skin_release(struct skin *skin);
+enum status plot_skin_read(const char *directory, struct skin *skin, struct error *error);
+void plot_skin_release(struct skin *skin);
 
 #endif

@@ -100,9 +100,9 @@ enum status study_axis_find(const struct study_table *table, const char *key,
 
 /* The first metric of those that readers ask for, else the first that varies. */
 static struct study_axis usual_metric(const struct study_table *table) {
-  static const char *const usual[] = {"bending_angle_deg", "sensitivity_deg_per_kPa",
-                                      "twist_angle_deg",   "contraction_pct",
-                                      "extension_ratio",   "trigger_pressure_kPa"};
+  static const char *const usual[] = {
+      "grasp_force_peak_N", "blocked_force_N", "bending_angle_deg", "sensitivity_deg_per_kPa",
+      "twist_angle_deg",    "contraction_pct", "extension_ratio",   "trigger_pressure_kPa"};
   for (size_t i = 0; i < sizeof usual / sizeof *usual; i++) {
     size_t at = find(table->metric, table->metrics, usual[i]);
     struct study_axis axis = {0};

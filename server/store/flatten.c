@@ -42,6 +42,15 @@ static bool quantity_read(const struct units *units, const char *text, double *v
   return false;
 }
 
+/* 0.9 as it was written, not 0.90000000000000002; what reads back as another number gets all its
+ * digits. */
+static void write_shortest(double value, char *text, size_t size) {
+  snprintf(text, size, "%.15g", value);
+  if (strtod(text, NULL) != value) {
+    snprintf(text, size, "%.17g", value);
+  }
+}
+
 static enum status flatten_leaf(struct flattening *to, const json_t *leaf) {
   char number[32];
   struct parameter parameter = {
@@ -55,7 +64,7 @@ static enum status flatten_leaf(struct flattening *to, const json_t *leaf) {
     snprintf(number, sizeof number, "%lld", (long long)json_integer_value(leaf));
   } else if (json_is_real(leaf)) {
     parameter.value = json_real_value(leaf);
-    snprintf(number, sizeof number, "%.17g", parameter.value);
+    write_shortest(parameter.value, number, sizeof number);
   } else {
     parameter.value = json_is_true(leaf);
     parameter.has_value = json_is_boolean(leaf);

@@ -1,0 +1,120 @@
+// The page of a grasp: the moving view of fingers and object, what can be read without scripts, the
+// comparison of grasps.
+import { lab } from './driver.mjs';
+
+// On a machine without a graphics card Chromium draws WebGL by software, and says what that costs.
+const BY_SOFTWARE = /GPU stall due to ReadPixels/;
+
+function grasp(name, friction) {
+  return {
+    kind: 'grasp',
+    name,
+    actuator: {
+      family: 'pneunet', length: '38 mm', width: '20 mm', height: '15.6 mm', chambers: [{ config: 'B', count: 4 }],
+      chamber_gap: '2 mm', side_wall: '2 mm', top_wall: '1.5 mm', bottom_layer: '4 mm',
+    },
+    material: 'elastic-50a',
+    load: { pressure: { to: '20 kPa', steps: 4 } },
+    object: {
+      shape: { form: 'cylinder', diameter: '20 mm', length: '40 mm' },
+      position: ['22 mm', 0, '-12 mm'], axis: [0, 1, 0], friction,
+    },
+    grasp: { pull: { direction: [0, 0, -1], distance: '12 mm', steps: 6 } },
+    accuracy: 'draft',
+  };
+}
+
+async function testView({ open, check }) {
+  const visit = await open('/jobs/1');
+  const { page } = visit;
+  await visit.until('the grasp is drawn', () => document.getElementById('shape-canvas')?.dataset.drawn > 0);
+  const canvas = page.locator('#shape-canvas');
+  await canvas.scrollIntoViewIfNeeded();
+  const seen = [await canvas.screenshot()];
+  const differs = async (name, act) => {
+    await act();
+    await page.waitForTimeout(250);
+    const picture = await canvas.screenshot();
+    check(name, seen.every((one) => !one.equals(picture)));
+    seen.push(picture);
+  };
+  check('it starts at the peak', /^Pull · .*kPa · .*mm · .*N/.test(await page.textContent('#shape-value')));
+  check('the legend has its unit', await page.textContent('#shape-legend .legend-title') === 'Contact pressure (kPa)');
+  await differs('the slider moves it', () => page.fill('#shape-pressure', '0'));
+  await page.focus('#shape-pressure');
+  await differs('keys move it on', async () => {
+    for (let i = 0; i < 8; i++) {
+      await page.keyboard.press('PageUp');
+    }
+  });
+  check('readers of screens are told', /^Gripper and object: .*coloured by contact pressure from 0\skPa to/.test(
+    await canvas.getAttribute('aria-label')));
+  await differs('the object can be hidden', () => page.uncheck('#shape-ghost'));
+  await page.check('#shape-ghost');
+  await differs('a moment is gone to', () => page.click('.shape-tools button:text-is("Last touch")'));
+  await differs('colours change', () => page.selectOption('#shape-field', 'stretch'));
+  await page.click('.shape-tools button:text-is("Before")');
+  await visit.until('the address says what is seen', () => location.hash === '#shape=0,stretch');
+  await page.click('.shape-tools button:text-is("Play")');
+  await visit.until('it plays to its end', () => document.getElementById('shape-pressure').value === '1000');
+  await visit.accessible('the grasp is accessible');
+  await visit.still();
+  await visit.quiet('the view complains about nothing', BY_SOFTWARE);
+  await visit.close();
+}
+
+async function testReading({ open, check }) {
+  const visit = await open('/jobs/1', { script: false });
+  const { page } = visit;
+  check('a picture stands for the view', await page.locator('#shape img').evaluate((image) => image.naturalWidth) === 800);
+  check('the peak has its unit', await page.textContent('[data-metric=grasp_force_peak_N] .unit') === 'N');
+  check('stages can be read', /pull/.test(await page.textContent('.samples tbody')));
+  for (const plot of ['force', 'snapshots', 'contact', 'stages']) {
+    check(`${plot} is drawn`, await page.locator(`[data-plot=${plot}] img`).evaluate(async (image) => {
+      await image.decode();
+      return image.naturalWidth;
+    }) === 800);
+  }
+  await visit.quiet();
+  await visit.close();
+}
+
+async function testCompare({ open, check }) {
+  const visit = await open('/?compare=1,2');
+  await visit.page.click('#compare-button');
+  await visit.until('the forces are drawn', () => document.querySelector('#curve-chart canvas'));
+  await visit.until('over the displacement', () => /^Grasp force \(N\) against displacement of the object of 2 jobs/.test(
+    document.getElementById('curve-chart').ariaLabel));
+  check('grasps are side by side', await visit.page.locator('.small-plot img').count() === 2);
+  await visit.accessible('the comparison is accessible');
+  await visit.quiet('the comparison complains about nothing', BY_SOFTWARE);
+  await visit.close();
+}
+
+async function testSizes({ open }) {
+  const pages = { grasp: '/jobs/1', compared: '/compare?jobs=1,2' };
+  for (const [width, height, scheme] of [[1280, 900, 'light'], [390, 844, 'dark']]) {
+    for (const [name, path] of Object.entries(pages)) {
+      const what = `${name}-${width}-${scheme}`;
+      const visit = await open(path, { width, height, scheme });
+      await visit.page.waitForLoadState('networkidle');
+      await visit.fits(`${what} fits`);
+      await visit.accessible(`${what} is accessible`);
+      await visit.quiet(`${what} complains about nothing`, BY_SOFTWARE);
+      await visit.shot(what);
+      await visit.close();
+    }
+  }
+}
+
+await lab(async (tools) => {
+  const { daemon, check } = tools;
+  for (const [name, friction] of [['rough', 0.9], ['smooth', 0.4]]) {
+    const job = await daemon.submit(grasp(name, friction));
+    check(`${name}: it is solved`, job.state === 'succeeded', job.message);
+  }
+  await testView(tools);
+  await testReading(tools);
+  await testCompare(tools);
+  await testSizes(tools);
+}, { options: ['--workers', '1'] });
