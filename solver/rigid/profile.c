@@ -161,6 +161,10 @@ static enum status check_crossing(const struct meridian_piece *piece, int count,
   }
   memcpy(p[points++], piece[0].start, sizeof *p);
   for (int i = 0; i < count; i++) {
+    /* What rounded corners leave of a line may be nothing. */
+    if (piece[i].length < 1e-3 * NEAREST) {
+      continue;
+    }
     int parts = 1 + (int)(fabs(piece[i].curvature) * piece[i].length / (PI / 12));
     parts = parts < PARTS_MAX ? parts : PARTS_MAX;
     for (int k = 1; k <= parts; k++) {

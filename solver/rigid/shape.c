@@ -1,5 +1,6 @@
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "solver/base/vec3.h"
 #include "solver/rigid/shape_internal.h"
@@ -17,6 +18,7 @@ enum status rigid_shape_allocate(enum rigid_kind kind, struct rigid_shape **shap
 void rigid_shape_destroy(struct rigid_shape *shape) {
   if (shape) {
     meridian_release(&shape->meridian);
+    surface_release(&shape->surface);
     free(shape);
   }
 }
@@ -63,6 +65,8 @@ bool rigid_shape_nearest(const struct rigid_shape *shape, const double x[3], dou
     return nearest_sphere(shape->radius, x, reach, nearest);
   case RIGID_BOX:
     return box_nearest(&shape->box, x, reach, nearest);
+  case RIGID_SURFACE:
+    return surface_nearest(&shape->surface, x, reach, nearest);
   default:
     return meridian_nearest(&shape->meridian, x, reach, nearest);
   }
@@ -96,6 +100,10 @@ void rigid_shape_bounds(const struct rigid_shape *shape, double low[3], double h
       low[i] = -high[i];
     }
     return;
+  case RIGID_SURFACE:
+    memcpy(low, shape->surface.low, sizeof shape->surface.low);
+    memcpy(high, shape->surface.high, sizeof shape->surface.high);
+    return;
   default:
     for (int i = 0; i < 2; i++) {
       high[i] = meridian->high[1];
@@ -112,6 +120,9 @@ bool rigid_shape_mass(const struct rigid_shape *shape, struct rigid_mass *mass) 
     return false;
   case RIGID_BOX:
     box_mass(&shape->box, mass);
+    return true;
+  case RIGID_SURFACE:
+    surface_mass(&shape->surface, mass);
     return true;
   default:
     meridian_mass(&shape->meridian, mass);

@@ -100,6 +100,20 @@ enum status rigid_shape_create_revolution(const double (*point)[2], int count,
                                           enum rigid_profile form, double edge,
                                           struct rigid_shape **shape, struct error *error);
 
+struct stl;
+
+/* Angle between triangles from which their edge is one of the body, unless another is given. */
+#define RIGID_CREASE 0.6981317007977318 /* rad: 40 degrees */
+
+/* The body within the triangles of an STL file (solver/rigid/stl.h), whose coordinates are in
+ * `unit` metres, read as its smooth surface: solver/rigid/surface.h tells how, and what is checked.
+ * crease: edges at which the triangles turn by this angle (rad) or more stay sharp; with 0 all
+ * triangles stay flat. STATUS_INVALID with the surface's fault and where it is ("/stl"), for sizes
+ * that only a wrong unit makes ("/unit") and an impossible angle ("/crease"); STATUS_TOO_LARGE when
+ * it has too many long thin triangles to be checked. */
+enum status rigid_shape_create_surface(const struct stl *stl, double unit, double crease,
+                                       struct rigid_shape **shape, struct error *error);
+
 void rigid_shape_destroy(struct rigid_shape *shape);
 
 enum rigid_kind rigid_shape_kind(const struct rigid_shape *shape);

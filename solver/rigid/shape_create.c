@@ -150,3 +150,28 @@ enum status rigid_shape_create_revolution(const double (*point)[2], int count,
                                           struct rigid_shape **shape, struct error *error) {
   return revolve_profile(RIGID_REVOLUTION, point, count, form, edge, shape, error);
 }
+
+enum status rigid_shape_create_surface(const struct stl *stl, double unit, double crease,
+                                       struct rigid_shape **shape, struct error *error) {
+  if (!(unit > 0 && unit <= SIZE_LARGEST)) {
+    return error_set(error, STATUS_INVALID, "/unit",
+                     "the unit of the surface is %g mm\nabove 0, at most 10 m\n\"mm\"", 1e3 * unit);
+  }
+  if (!(crease >= 0 && crease <= PI)) {
+    return error_set(error, STATUS_INVALID, "/crease",
+                     "edges of the surface stay sharp from %g degrees on\nfrom 0 (all of them) to "
+                     "180 degrees (none)\n\"40 deg\"",
+                     crease * 180 / PI);
+  }
+  struct rigid_shape *made = NULL;
+  enum status status = rigid_shape_allocate(RIGID_SURFACE, &made, error);
+  if (status == STATUS_OK) {
+    status = surface_create(stl, unit, crease, &made->surface, error);
+  }
+  if (status != STATUS_OK) {
+    rigid_shape_destroy(made);
+    return status;
+  }
+  *shape = made;
+  return STATUS_OK;
+}

@@ -5,12 +5,14 @@
 #include "solver/rigid/box.h"
 #include "solver/rigid/meridian.h"
 #include "solver/rigid/shape.h"
+#include "solver/rigid/surface.h"
 
 struct rigid_shape {
   enum rigid_kind kind;
   double radius;            /* of a sphere, m */
   struct meridian meridian; /* of all bodies of revolution, spheres among them */
   struct rounded_box box;
+  struct surface surface;
 };
 
 /* An empty shape. STATUS_NO_MEMORY with its message. */
