@@ -163,7 +163,7 @@ static void fill_strip(const struct map *map, enum side side, double scale, stru
 
 static bool draw_strip(const struct map *map, enum side side, struct canvas *canvas,
                        struct box area) {
-  struct raster *raster = raster_create((int)ceil(area.width), (int)ceil(area.height));
+  struct raster *raster = raster_create((int)ceil(area.width), (int)ceil(area.height), 2);
   struct text_style style = chart_style_tick();
   double u = canvas->unit;
   if (!raster) {
@@ -171,7 +171,7 @@ static bool draw_strip(const struct map *map, enum side side, struct canvas *can
   }
   double scale = area.width / (map->to - map->from) * raster->factor;
   fill_strip(map, side, scale, raster);
-  bool good = raster_paint(raster, canvas->cr, round(area.x), round(area.y));
+  bool good = raster_paint(raster, canvas->cr, round(area.x), round(area.y), 1);
   raster_destroy(raster);
   style.colour = colour_ink;
   style.max_width = area.x - 14 * u;

@@ -6,12 +6,12 @@
 
 enum { SAMPLE_LIMIT = 8000000 };
 
-struct raster *raster_create(int width, int height) {
+struct raster *raster_create(int width, int height, int finest) {
   struct raster *raster = calloc(1, sizeof *raster);
   if (!raster) {
     return NULL;
   }
-  raster->factor = 3;
+  raster->factor = finest;
   while (raster->factor > 1 &&
          (double)width * height * raster->factor * raster->factor > SAMPLE_LIMIT) {
     raster->factor--;
@@ -131,7 +131,7 @@ static uint32_t average(const struct raster *raster, int px, int py) {
   return (a / n) << 24 | (r / n) << 16 | (g / n) << 8 | b / n;
 }
 
-int raster_paint(const struct raster *raster, cairo_t *cr, double x, double y) {
+int raster_paint(const struct raster *raster, cairo_t *cr, double x, double y, double alpha) {
   int width = raster->width / raster->factor, height = raster->height / raster->factor;
   cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height);
   unsigned char *pixels = cairo_image_surface_get_data(surface);
@@ -149,7 +149,7 @@ int raster_paint(const struct raster *raster, cairo_t *cr, double x, double y) {
   }
   cairo_surface_mark_dirty(surface);
   cairo_set_source_surface(cr, surface, x, y);
-  cairo_paint(cr);
+  cairo_paint_with_alpha(cr, alpha);
   cairo_surface_destroy(surface);
   return 1;
 }

@@ -22,9 +22,9 @@ struct raster_vertex {
 
 enum { RASTER_SHADES = 256 };
 
-/* Creates an empty raster for width x height pixels; takes as many samples a pixel (1, 4, 9) as
- * stay below 8 million. Returns NULL when memory ran out. */
-struct raster *raster_create(int width, int height);
+/* Creates an empty raster for width x height pixels; takes as many samples a pixel (1, 4, 9), at
+ * most finest x finest of them, as stay below 8 million. Returns NULL when memory ran out. */
+struct raster *raster_create(int width, int height, int finest);
 void raster_destroy(struct raster *raster);
 
 /* Forgets the depths, so that what follows covers everything drawn before. */
@@ -38,8 +38,8 @@ void raster_triangle(struct raster *raster, const struct raster_vertex corners[3
 void raster_line(struct raster *raster, const struct raster_vertex ends[2], struct rgb colour,
                  double width, double bias);
 
-/* Paints the averaged samples with their top left corner at (x, y). Error: false when memory ran
- * out. */
-int raster_paint(const struct raster *raster, cairo_t *cr, double x, double y);
+/* Paints the averaged samples with their top left corner at (x, y), a part `alpha` (0 to 1) of
+ * them. Error: false when memory ran out. */
+int raster_paint(const struct raster *raster, cairo_t *cr, double x, double y, double alpha);
 
 #endif

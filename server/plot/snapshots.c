@@ -46,12 +46,12 @@ static size_t finger_first(const struct frames *f, size_t finger) {
 static struct solid finger_of(const struct frames *f, const struct scene *scene, size_t finger) {
   const struct frames_body *body = &f->bodies[f->fingers[finger].body];
   return (struct solid){scene->fingers + finger_first(f, finger), body->point_count,
-                        (const size_t(*)[4])body->quads, body->quad_count};
+                        (const size_t(*)[4])body->quads, body->quad_count, true};
 }
 
 static struct solid object_of(const struct frames *f, const struct scene *scene) {
   return (struct solid){scene->object, f->object_point_count, (const size_t(*)[4])f->object_quads,
-                        f->object_quad_count};
+                        f->object_quad_count, true};
 }
 
 /* ---- what is shown ----------------------------------------------------------------------- */
@@ -105,7 +105,7 @@ static enum status find_edges(struct album *album, struct error *error) {
   for (size_t b = 0; b < f->body_count && good; b++) {
     const struct frames_body *body = &f->bodies[b];
     struct solid solid = {body->rest, body->point_count, (const size_t(*)[4])body->quads,
-                          body->quad_count};
+                          body->quad_count, true};
     album->edges[b] = solid_edges(&solid);
     good = album->edges[b];
   }
@@ -213,19 +213,18 @@ static void draw_object(const struct album *album, const struct scene *scene,
  */
 static bool draw_scene(const struct album *album, const struct scene *scene, struct canvas *canvas,
                        struct box area, double scale) {
-  struct raster *raster = raster_create((int)area.width, (int)area.height);
+  struct raster *raster = raster_create((int)area.width, (int)area.height, 2);
   if (!raster) {
     return false;
   }
   struct solid_view view = solid_view_front();
   solid_view_centre(&view, &scene->box, scale * raster->factor, raster);
   draw_fingers(album, scene, canvas, &view, raster);
-  bool good = raster_paint(raster, canvas->cr, round(area.x), round(area.y));
-  draw_object(album, scene, canvas, &view, raster);
-  cairo_push_group(canvas->cr);
-  good = good && raster_paint(raster, canvas->cr, round(area.x), round(area.y));
-  cairo_pop_group_to_source(canvas->cr);
-  cairo_paint_with_alpha(canvas->cr, OBJECT_GLASS);
+  bool good = raster_paint(raster, canvas->cr, round(area.x), round(area.y), 1);
+  if (album->frames.object_quad_count > 0) {
+    draw_object(album, scene, canvas, &view, raster);
+    good = good && raster_paint(raster, canvas->cr, round(area.x), round(area.y), OBJECT_GLASS);
+  }
   raster_destroy(raster);
   return good;
 }
@@ -271,7 +270,9 @@ static enum status draw_album(const struct album *album, struct canvas *canvas, 
   double base = area.y + area.height - strip / 2;
   double x = contact_ruler(canvas, area.x, base, scale, 0.2 * inner.width) + 24 * u;
   x = contact_key(canvas, x, base, (struct colour){.role = COLOUR_BARE}, "no contact") + 20 * u;
-  contact_key(canvas, x, base, (struct colour){.role = COLOUR_OBJECT, .fade = 0.3}, "object");
+  if (album->frames.object_quad_count > 0) {
+    contact_key(canvas, x, base, (struct colour){.role = COLOUR_OBJECT, .fade = 0.3}, "object");
+  }
   inner.width = area.width;
   chart_bar(canvas, &album->scale.bar, inner);
   return STATUS_OK;

@@ -1,7 +1,6 @@
 #include "server/plot/solid.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 
 /* Edges between faces that meet at more than about 35 degrees are drawn. */
@@ -97,6 +96,9 @@ void solid_fill(const struct solid *solid, const double *values,
     const size_t *q = solid->quads[i];
     struct skin_point n = quad_normal(solid, i);
     double side = towards_viewer(view, n) < 0 ? -1 : 1;
+    if (solid->closed && side < 0) {
+      continue;
+    }
     double light = ambient + (1 - ambient) * fmax(side * dot(view->light, n), 0.0);
     struct raster_vertex corner[4];
     for (size_t k = 0; k < 4; k++) {

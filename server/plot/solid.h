@@ -2,6 +2,7 @@
 #ifndef PNEULAB_PLOT_SOLID_H
 #define PNEULAB_PLOT_SOLID_H
 
+#include <stdbool.h>
 #include "server/plot/raster.h"
 #include "server/plot/skin.h"
 
@@ -12,6 +13,7 @@ struct solid {
   size_t point_count;
   const size_t (*quads)[4];
   size_t quad_count;
+  bool closed; /* all faces look outwards: those that look away from the viewer are hidden */
 };
 
 /* A projection: a point p lies at left + scale (across p) and bottom - scale (up p), and (away p)

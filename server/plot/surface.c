@@ -9,7 +9,7 @@
 /* One of the two states. */
 static struct solid solid_of(const struct skin *skin, const struct skin_point *points) {
   return (struct solid){points, skin->point_count, (const size_t(*)[4])skin->quads,
-                        skin->quad_count};
+                        skin->quad_count, false};
 }
 
 /* Values between 0 and 1 for the shades; *bar gets the range. NULL: no memory, or no stretches. */
@@ -92,7 +92,8 @@ static enum status draw_body(struct canvas *canvas, const struct skin *skin, str
   struct solid rest = solid_of(skin, skin->rest), bent = solid_of(skin, skin->bent);
   struct solid_edge *edges = solid_edges(&rest);
   double bar_room = chart_bar_room(canvas, bar), strip = 34 * canvas->unit;
-  struct raster *raster = raster_create((int)(area.width - bar_room), (int)(area.height - strip));
+  struct raster *raster =
+      raster_create((int)(area.width - bar_room), (int)(area.height - strip), 3);
   if (!edges || !raster || (skin->stretch && !values)) {
     status = error_set(error, STATUS_NO_MEMORY, NULL, "memory ran out while drawing a surface");
     goto done;
@@ -103,7 +104,7 @@ static enum status draw_body(struct canvas *canvas, const struct skin *skin, str
   solid_box_widen(&box, &view, &bent);
   solid_view_centre(&view, &box, solid_box_scale(&box, raster), raster);
   draw_states(canvas, skin, values, edges, &view, raster);
-  if (!raster_paint(raster, canvas->cr, round(area.x), round(area.y))) {
+  if (!raster_paint(raster, canvas->cr, round(area.x), round(area.y), 1)) {
     status = error_set(error, STATUS_NO_MEMORY, NULL, "memory ran out while drawing a surface");
     goto done;
   }
