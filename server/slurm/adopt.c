@@ -38,6 +38,7 @@ static void member_adopt(struct slurm_task *task, const struct cluster_attempt *
   member->time_limit_s = limit_s + settings->timeout_margin_s;
   member->job = ending_job_read(&slurm->ending, attempt->job_id, 0);
   member->cancel = attempt->state == JOB_STATE_CANCELLING;
+  member->noted = attempt->state == JOB_STATE_RUNNING;
   member->settled = false;
   slurm->cancels = slurm->cancels || member->cancel;
 }

@@ -124,8 +124,8 @@ enum status slurm_find(struct slurm_client *client, const char *name, int64_t *j
 
 enum status slurm_cancel(struct slurm_client *client, const char *const *tasks, size_t count,
                          bool member, struct error *error) {
-  const char *argv[SLURM_SCANCEL_MAX + 5] = {"scancel", "--quiet"};
-  size_t used = 2;
+  const char *argv[SLURM_SCANCEL_MAX + 4] = {"scancel"};
+  size_t used = 1;
   char *output;
   if (member) {
     argv[used++] = "--batch";

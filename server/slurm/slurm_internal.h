@@ -27,6 +27,7 @@ struct slurm_member {
   struct ending_job job;
   bool cancel;  /* it is to end; under the mutex */
   bool told;    /* the task knows */
+  bool noted;   /* that it runs is in the database */
   bool settled; /* its outcome is stored, or it was none of ours */
 };
 
@@ -34,7 +35,6 @@ struct slurm_member {
 struct slurm_follow {
   off_t offset;       /* in its lines */
   int running;        /* the member that it solves, or NO_MEMBER */
-  bool noted;         /* that it runs is in the database */
   bool any;           /* some member is done */
   int64_t kill_at_ms; /* a request to end that member is not waited for any longer; 0: none */
   struct watch watch; /* of that member */

@@ -96,7 +96,6 @@ static void begin(struct slurm_task *task, int index) {
   follow->running = index;
   follow->progress = progress_none();
   pthread_mutex_unlock(&slurm->mutex);
-  follow->noted = false;
   follow->kill_at_ms = 0;
   follow->watch = (struct watch){.timeout_at_ms = now + (int64_t)(1000 * member->time_limit_s)};
   follow->reader = (struct progress_reader){.offset = 0};
@@ -184,7 +183,7 @@ static void note_running(struct slurm_task *task, struct slurm_member *member) {
   struct error error;
   enum status status =
       store_attempt_running(settings->store, member->job_id, member->attempt, 0, &error);
-  task->follow->noted = true;
+  member->noted = true;
   if (status == STATUS_OK) {
     settings->changed(settings->context, member->job_id);
   } else if (status == STATUS_CONFLICT) {
@@ -226,7 +225,7 @@ void task_watch(struct slurm_task *task, bool progress) {
     return;
   }
   struct slurm_member *member = &task->member[follow->running];
-  if (!follow->noted) {
+  if (!member->noted) {
     note_running(task, member);
   }
   if (progress) {
