@@ -27,9 +27,13 @@ static struct method method_of(const struct dynamics *d) {
 /* The acceleration of the method is that of a moment (-alpha) steps before the state's. For a step
  * of another length it is wanted at another moment: on the line through that and the balanced one,
  * which is the state's own. */
-static double start_acceleration(const struct motion *motion, double h, int i) {
+static double move_moment(const struct motion *motion, double h, double own, double balanced) {
   double ratio = motion->last > 0 ? h / motion->last : 1;
-  return motion->acceleration[i] + (1 - ratio) * (motion->balanced[i] - motion->acceleration[i]);
+  return own + (1 - ratio) * (balanced - own);
+}
+
+static double start_acceleration(const struct motion *motion, double h, int i) {
+  return move_moment(motion, h, motion->acceleration[i], motion->balanced[i]);
 }
 
 /* Viscous stress by differences of second order (of first order at the start): dC/dt = k1 (C -
@@ -62,6 +66,41 @@ static void prepare(struct dynamics *d, const struct fe_state *state, const stru
   prepare_viscosity(d, state, motion, h);
 }
 
+/* The step as the free object takes it. */
+static void prepare_object(struct dynamics *d, const struct motion *motion, double h) {
+  struct method k = method_of(d);
+  const struct object_motion *m = &motion->object;
+  struct object_step step = {h, k.alpha, k.beta, k.gamma, d->options.drag, {0}, {0}, {0}, {0}};
+  for (int i = 0; i < 3; i++) {
+    step.velocity[i] = m->velocity[i];
+    step.spin[i] = m->spin[i];
+    step.acceleration[i] = move_moment(motion, h, m->acceleration[i], m->balanced[i]);
+    step.turning[i] = move_moment(motion, h, m->turning[i], m->balanced_turning[i]);
+  }
+  d->object->step = step;
+  free_object_begin(d->object);
+}
+
+/* The state before the step that did not do. */
+static void take_back(struct dynamics *d, struct fe_state *state) {
+  state_copy(d->model, state, &d->saved);
+  if (d->object) {
+    free_object_return(d->object);
+    d->object->step.h = 0;
+  }
+}
+
+/* How much the accelerations of the free object change in the step, m/s2. */
+static double object_change(const struct free_object *o) {
+  double a[3], turning[3], shift = 0, turn = 0;
+  free_motion_end(o, a, turning);
+  for (int i = 0; i < 3; i++) {
+    shift += pow(a[i] - o->step.acceleration[i], 2);
+    turn += pow(turning[i] - o->step.turning[i], 2);
+  }
+  return sqrt(shift) + o->size * sqrt(turn);
+}
+
 /* Accelerations of the method at the end of a step, into d->work, and the step's error. */
 static void measure(struct dynamics *d, const struct fe_state *state, const struct motion *motion,
                     double h) {
@@ -73,8 +112,11 @@ static void measure(struct dynamics *d, const struct fe_state *state, const stru
     d->work[i] = moved / (k.beta * h * h) - (0.5 / k.beta - 1) * start;
     sum += (d->work[i] - start) * (d->work[i] - start);
   }
-  double factor = 0.5 * k.alpha + k.beta - 1.0 / 6;
-  d->error = fabs(factor) * h * h * sqrt(3 * sum / d->model->dof_count);
+  double change = sqrt(3 * sum / d->model->dof_count);
+  if (d->object) {
+    change = fmax(change, object_change(d->object));
+  }
+  d->error = fabs(0.5 * k.alpha + k.beta - 1.0 / 6) * h * h * change;
 }
 
 /* Solves for the state at the end of a step; on failure the state is that at its start. */
@@ -85,6 +127,9 @@ static enum status solve(struct dynamics *d, const struct fe_load *load, double 
   int iterations = 0;
   state_copy(d->model, &d->saved, state);
   prepare(d, state, motion, h);
+  if (d->object) {
+    prepare_object(d, motion, h);
+  }
   solver->factor_fits =
       d->factor_step == h && d->factorizations == d->model->statistics.factorizations;
   solver->pressure_step = 0;
@@ -100,18 +145,38 @@ static enum status solve(struct dynamics *d, const struct fe_load *load, double 
   d->statistics.iterations += iterations;
   d->last_iterations = iterations;
   if (status != STATUS_OK) {
-    state_copy(d->model, state, &d->saved);
+    take_back(d, state);
     return status;
   }
   measure(d, state, motion, h);
   return STATUS_OK;
 }
 
+static void measure_kinetic(const struct dynamics *d, struct motion *motion) {
+  motion->kinetic = inertia_kinetic(d->inertia, motion->velocity);
+  if (d->object) {
+    motion->kinetic += free_motion_kinetic(d->object, &motion->object);
+  }
+}
+
+/* Commits the obstacles; what they have done, the free object's weight among it. */
+void dynamics_commit(struct dynamics *d, struct fe_state *state, struct energy_step *step) {
+  const struct fe_model *m = d->model;
+  model_commit_obstacles(d->model, state);
+  for (int k = 0; k < m->obstacle_count; k++) {
+    step->friction += m->obstacle[k]->friction_work;
+    step->obstacle_work += d->object && d->object->index == k ? 0 : m->obstacle[k]->motion_work;
+  }
+  step->weight_work += d->object ? free_object_weight_work(d->object) : 0;
+}
+
 /* The motion and the ledger take over what `solve` has found. */
-static void accept(struct dynamics *d, const struct fe_load *load, double h,
-                   const struct fe_state *state, struct motion *motion, struct energy *energy) {
+static void accept(struct dynamics *d, const struct fe_load *load, double h, struct fe_state *state,
+                   struct motion *motion, struct energy *energy) {
   struct method k = method_of(d);
-  double power = motion->power;
+  struct energy_step step = {.kinetic = 0};
+  double kinetic = motion->kinetic;
+  dynamics_commit(d, state, &step);
   for (int i = 0; i < 3 * d->model->mesh->node_count; i++) {
     double start = start_acceleration(motion, h, i), end = d->work[i];
     motion->velocity[i] += h * ((1 - k.gamma) * start + k.gamma * end);
@@ -119,15 +184,18 @@ static void accept(struct dynamics *d, const struct fe_load *load, double h,
     motion->acceleration[i] = end;
     motion->before[i] = d->saved.u[i];
   }
-  motion->kinetic = inertia_kinetic(d->inertia, motion->velocity);
-  motion->power = energy_viscous_power(d->model, d->inertia, state, d->options.viscosity) +
-                  2 * d->options.drag * motion->kinetic;
+  if (d->object) {
+    free_motion_accept(d->object, &motion->object);
+    d->object->step.h = 0;
+  }
+  measure_kinetic(d, motion);
+  step.kinetic = motion->kinetic;
+  step.damping = energy_viscous(d->model, d->inertia, d->saved.u, state->u, motion->viscous) +
+                 h * d->options.drag * (kinetic + motion->kinetic);
   motion->time += h;
   motion->last = h;
   d->statistics.steps++;
   if (energy) {
-    struct energy_step step = {.kinetic = motion->kinetic,
-                               .damping = 0.5 * h * (power + motion->power)};
     energy_record(energy, d->model, state, load, &step);
   }
 }
@@ -191,7 +259,7 @@ static enum status attempt(struct dynamics *d, const struct dynamics_drive *driv
   if (d->error > too_much * d->options.tolerance && h > d->options.shortest) {
     *again = true;
     motion->step = fmax(wanted_change(d) * h, d->options.shortest);
-    state_copy(d->model, state, &d->saved);
+    take_back(d, state);
     return STATUS_DIVERGED;
   }
   accept(d, &end, h, state, motion, energy);
@@ -227,7 +295,7 @@ enum status dynamics_advance(struct dynamics *d, const struct dynamics_drive *dr
 static enum status unbalanced(struct dynamics *d, const struct fe_load *load,
                               const struct fe_state *state, struct motion *motion) {
   struct fe_model *m = d->model;
-  double instant = 1e-4 * motion->step;
+  double instant = 1e-5 * dynamics_scale(d);
   struct fe_load now = {load->pressure, load->pressure, load->dead};
   for (int i = 0; i < 3 * m->mesh->node_count; i++) {
     d->work[i] = state->u[i] - instant * motion->velocity[i];
@@ -239,9 +307,8 @@ static enum status unbalanced(struct dynamics *d, const struct fe_load *load,
   m->inertia = d->inertia;
   enum status status = model_evaluate(m, state, &now, true);
   m->inertia = NULL;
-  motion->kinetic = inertia_kinetic(d->inertia, motion->velocity);
-  motion->power = energy_viscous_power(m, d->inertia, state, d->options.viscosity) +
-                  2 * d->options.drag * motion->kinetic;
+  measure_kinetic(d, motion);
+  energy_viscous(m, d->inertia, state->u, state->u, motion->viscous);
   return status;
 }
 
@@ -251,6 +318,9 @@ enum status dynamics_balance(struct dynamics *d, const struct fe_load *load,
   enum status status = unbalanced(d, load, state, motion);
   if (status != STATUS_OK) {
     return status;
+  }
+  if (d->object) {
+    free_motion_balance(d->object, d->options.drag, &motion->object);
   }
   d->inertia->stiffness = 1;
   inertia_only(d->inertia, m);

@@ -21,7 +21,7 @@
 
 #include "solver/fe/energy.h"
 #include "solver/fe/equilibrium.h"
-#include "solver/fe/inertia.h"
+#include "solver/fe/free_object.h"
 
 struct dynamics_options {
   double fast;              /* rho: what is left of the fastest oscillations after a step, 0 to 1 */
@@ -40,8 +40,9 @@ struct motion {
   double *acceleration; /* of the method (at an earlier moment: see dynamics.c), m/s2 */
   double *balanced;     /* that of the balance of momentum at the state, m/s2 */
   double *before;       /* displacements at the start of the last step, m */
-  double power;         /* dissipated by viscosity and drag at the state, W */
-  double kinetic;       /* energy, J */
+  double *viscous;      /* stresses of the viscosity, element_count x ENERGY_STRESS, Pa */
+  double kinetic;       /* energy, J; that of a free object counts */
+  struct object_motion object; /* of the free object */
 };
 
 enum status motion_create(const struct fe_model *model, struct motion *motion);
@@ -59,6 +60,7 @@ struct dynamics {
   struct fe_model *model;
   struct equilibrium *solver;
   struct inertia *inertia;
+  struct free_object *object; /* that moves along, or NULL: set by the caller, borrowed */
   struct dynamics_options options;
   struct fe_state saved; /* before the step that is being tried */
   struct fe_state rest;  /* of dynamics_carry */
@@ -87,12 +89,24 @@ double dynamics_scale(const struct dynamics *dynamics);
 enum status dynamics_balance(struct dynamics *dynamics, const struct fe_load *load,
                              const struct fe_state *state, struct motion *motion);
 
-/* One step of length motion->step under the load at its end; load_before is the pressure at its
- * start. *energy, unless NULL, records it. On failure (as equilibrium_solve) state and motion are
- * as before. */
+/* Lowest angular frequency (1/s) of small vibrations about a state in equilibrium with the load,
+ * without damping, and its mode (node_count x 3, largest entry 1), by inverse iteration. A free
+ * object is taken to be held. Factorises. STATUS_OK, UNSTABLE_PATH for a state that is not stable,
+ * DIVERGED when two modes are as low as each other, INVERTED, NO_MEMORY. */
+enum status dynamics_frequency(struct dynamics *dynamics, const struct fe_load *load,
+                               const struct fe_state *state, double *mode, double *frequency);
+
+/* One step of length motion->step under the load at its end; pressure_before is that at its start.
+ * Obstacles are committed with it, and *energy, unless NULL, records it. On failure (as
+ * equilibrium_solve) state, motion and free object are as before; obstacles that the caller has
+ * moved are its own to put back (model_reject_obstacles). */
 enum status dynamics_step(struct dynamics *dynamics, const struct fe_load *load,
                           double pressure_before, struct fe_state *state, struct motion *motion,
                           struct energy *energy);
+
+/* Commits the obstacles at the end of an accepted step, moving or not, and adds to `step` what they
+ * have done: friction, the work of those that were moved, the weight of the free object. */
+void dynamics_commit(struct dynamics *dynamics, struct fe_state *state, struct energy_step *step);
 
 /* What happens to a body over time. */
 struct dynamics_drive {

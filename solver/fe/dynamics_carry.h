@@ -12,7 +12,9 @@ struct carry_options {
   int steps;       /* or so many steps */
   double wall_s;   /* or so much time on the wall; 0: no limit besides that of the solver */
   double quiet;    /* rest is tried when the kinetic energy has fallen to this share of its peak */
-  double near;     /* and found when it is so near to the moving state, rms, m */
+  double leftover; /* and found when no more energy is lost by it, as a part of what has moved or
+                    * been dissipated: at a turning point much more would be */
+  double near;     /* and when it is so near to the moving state, rms, m */
   struct dynamics_drive drive; /* all NULL: load and obstacles stay as they are */
 };
 
@@ -27,7 +29,7 @@ struct carry_report {
 };
 
 /* Limits for the dynamics: until at rest, at most 4000 times dynamics_scale, 400 steps and 60 s on
- * the wall; quiet 1e-3; near 2e-3 of the body's length. */
+ * the wall; quiet 1e-3; leftover 1e-2; near 2e-3 of the body's length. */
 struct carry_options carry_defaults(const struct dynamics *dynamics);
 
 /* From a state that rests, or moves as `motion` says (motion_clear for one at rest), under *load as

@@ -5,13 +5,19 @@
 #include <stdlib.h>
 #include <string.h>
 
+static size_t stress_count(const struct fe_model *m) {
+  return ENERGY_STRESS * (size_t)m->mesh->element_count;
+}
+
 enum status motion_create(const struct fe_model *m, struct motion *motion) {
-  size_t count = 3 * (size_t)m->mesh->node_count;
+  size_t count = 3 * (size_t)m->mesh->node_count, stresses = stress_count(m);
   *motion = (struct motion){.velocity = calloc(count, sizeof(double)),
                             .acceleration = calloc(count, sizeof(double)),
                             .balanced = calloc(count, sizeof(double)),
-                            .before = calloc(count, sizeof(double))};
-  if (!motion->velocity || !motion->acceleration || !motion->balanced || !motion->before) {
+                            .before = calloc(count, sizeof(double)),
+                            .viscous = calloc(stresses, sizeof(double))};
+  if (!motion->velocity || !motion->acceleration || !motion->balanced || !motion->before ||
+      !motion->viscous) {
     motion_release(motion);
     return STATUS_NO_MEMORY;
   }
@@ -23,16 +29,19 @@ void motion_release(struct motion *motion) {
   free(motion->acceleration);
   free(motion->balanced);
   free(motion->before);
+  free(motion->viscous);
   *motion = (struct motion){.time = 0};
 }
 
 void motion_clear(const struct fe_model *m, struct motion *motion) {
   size_t bytes = 3 * (size_t)m->mesh->node_count * sizeof(double);
-  motion->time = motion->last = motion->power = motion->kinetic = 0;
+  motion->time = motion->last = motion->kinetic = 0;
+  motion->object = (struct object_motion){.velocity = {0}};
   memset(motion->velocity, 0, bytes);
   memset(motion->acceleration, 0, bytes);
   memset(motion->balanced, 0, bytes);
   memset(motion->before, 0, bytes);
+  memset(motion->viscous, 0, stress_count(m) * sizeof *motion->viscous);
 }
 
 void motion_copy(const struct fe_model *m, struct motion *to, const struct motion *from) {
@@ -41,11 +50,12 @@ void motion_copy(const struct fe_model *m, struct motion *to, const struct motio
   memcpy(to->acceleration, from->acceleration, bytes);
   memcpy(to->balanced, from->balanced, bytes);
   memcpy(to->before, from->before, bytes);
+  memcpy(to->viscous, from->viscous, stress_count(m) * sizeof *to->viscous);
   to->time = from->time;
   to->step = from->step;
   to->last = from->last;
   to->kinetic = from->kinetic;
-  to->power = from->power;
+  to->object = from->object;
 }
 
 double dynamics_scale(const struct dynamics *d) {

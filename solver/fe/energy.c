@@ -1,5 +1,7 @@
 #include "solver/fe/energy.h"
 
+#include <string.h>
+
 /* Strain energy of element e. */
 static double element_energy(const struct fe_model *m, const struct fe_state *state, int e) {
   const struct element_geometry *g = &m->geometry[e];
@@ -29,34 +31,46 @@ double energy_strain(const struct fe_model *m, const struct fe_state *state) {
   return sum;
 }
 
-/* int |S|^2 dV of element e. */
-static double square_stress(const struct fe_model *m, const struct fe_state *state, int e,
-                            const struct element_viscosity *viscosity) {
-  double u[3][HEX27_STRIDE], sum = 0;
-  model_gather(m, state->u, e, u);
-  for (int q = 0; q < HEX27_POINTS; q++) {
-    double f[9];
-    int row = 0;
-    element_gradient(&m->geometry[e], q, u, f);
-    for (int j = 0; j < 3; j++) {
-      for (int l = j; l < 3; l++, row++) {
-        double c = f[j] * f[l] + f[3 + j] * f[3 + l] + f[6 + j] * f[6 + l];
-        double stress = viscosity->stiffness * (c - viscosity->history[row][q]);
-        sum += m->geometry[e].weight[q] * (j == l ? 1 : 2) * stress * stress;
-      }
+/* Rows of C = F^T F at point q. */
+static void stretches(const struct element_geometry *g, int q, double u[3][HEX27_STRIDE],
+                      double c[6]) {
+  double f[9];
+  int row = 0;
+  element_gradient(g, q, u, f);
+  for (int j = 0; j < 3; j++) {
+    for (int l = j; l < 3; l++) {
+      c[row++] = f[j] * f[l] + f[3 + j] * f[3 + l] + f[6 + j] * f[6 + l];
     }
   }
-  return sum;
 }
 
-double energy_viscous_power(const struct fe_model *m, const struct inertia *inertia,
-                            const struct fe_state *state, double viscosity) {
-  double sum = 0;
-  for (int e = 0; viscosity > 0 && e < m->mesh->element_count; e++) {
+double energy_viscous(const struct fe_model *m, const struct inertia *inertia, const double *from,
+                      const double *u, double *stress) {
+  static const double count[6] = {1, 2, 2, 1, 2, 1}; /* of a row in the full tensor */
+  double work = 0;
+  for (int e = 0; e < m->mesh->element_count; e++, stress += ENERGY_STRESS) {
     const struct element_viscosity *v = inertia_viscosity(inertia, e);
-    sum += v ? square_stress(m, state, e, v) : 0;
+    double start[3][HEX27_STRIDE], end[3][HEX27_STRIDE];
+    if (!v) {
+      memset(stress, 0, ENERGY_STRESS * sizeof *stress);
+      continue;
+    }
+    model_gather(m, from, e, start);
+    model_gather(m, u, e, end);
+    for (int q = 0; q < HEX27_POINTS; q++) {
+      double before[6], now[6], density = 0;
+      stretches(&m->geometry[e], q, start, before);
+      stretches(&m->geometry[e], q, end, now);
+      for (int row = 0; row < 6; row++) {
+        double *s = &stress[HEX27_POINTS * row + q];
+        double s1 = v->stiffness * (now[row] - v->history[row][q]);
+        density += 0.25 * count[row] * (*s + s1) * (now[row] - before[row]);
+        *s = s1;
+      }
+      work += m->geometry[e].weight[q] * density;
+    }
   }
-  return viscosity > 0 ? sum / (2 * viscosity) : 0;
+  return work;
 }
 
 /* Work of the whole dead load on the way to the state. */
@@ -93,7 +107,8 @@ void energy_record(struct energy *energy, const struct fe_model *m, const struct
   energy->friction += step->friction;
   energy->obstacle_work += step->obstacle_work;
   energy->pressure_work += 0.5 * (last.pressure + load->pressure) * (energy->volume - last.volume);
-  energy->weight_work += 0.5 * (last.dead + load->dead) * (energy->lift - last.lift);
+  energy->weight_work +=
+      0.5 * (last.dead + load->dead) * (energy->lift - last.lift) + step->weight_work;
   double work = energy->pressure_work + energy->weight_work + energy->obstacle_work;
   double stored = energy->strain + energy->kinetic - energy->start;
   energy->remainder = work - stored - energy->damping - energy->friction;

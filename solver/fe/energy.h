@@ -6,14 +6,15 @@
 
 /* All in J, of the modelled body (half of it for a half model). */
 struct energy {
-  double strain, kinetic;            /* now */
-  double pressure_work, weight_work; /* done on the body since the start, by the pressure in its
-                                      * cavities and by the dead load */
+  double strain, kinetic;            /* now; that of a free object counts */
+  double pressure_work, weight_work; /* done since the start by the pressure in the cavities, and
+                                      * by the dead load and the weight of a free object */
   double obstacle_work;              /* by obstacles that were moved */
   double damping, friction;          /* dissipated since the start */
   double remainder; /* lost besides: work - change of strain and kinetic energy - dissipated. The
-                     * time integration dissipates it, and the works, taken by the trapezoidal
-                     * rule, err by it */
+                     * time integration dissipates it; the works, taken by the trapezoidal rule,
+                     * err by it; and a contact that settles at another overlap than before (see
+                     * equilibrium_options) takes or gives its force times the difference */
   /* At the start, and at the last record. */
   double start;
   double pressure, volume, dead, lift;
@@ -22,10 +23,14 @@ struct energy {
 /* Strain energy int W + p (J - 1) - p^2 / (2 kappa) dV, J. */
 double energy_strain(const struct fe_model *model, const struct fe_state *state);
 
-/* The power that the viscosity (Pa s) dissipates at the state, int |S|^2 / (2 viscosity) dV with
- * the stress S that `inertia` gives it there, W. */
-double energy_viscous_power(const struct fe_model *model, const struct inertia *inertia,
-                            const struct fe_state *state, double viscosity);
+enum { ENERGY_STRESS = 6 * HEX27_POINTS }; /* of one element, 27 row + point: 00 01 02 11 12 22 */
+
+/* Viscous stresses S of all elements (Pa, ENERGY_STRESS each) that `inertia` gives at displacements
+ * u, over those given; returns the work int (S before + S now)/2 : (C(u) - C(from))/2 dV of the way
+ * from displacements `from`, J. That trapezoidal rule closes with that of the other works, while
+ * the power of a rate that swings from step to step would not; and it sees no rigid motion. */
+double energy_viscous(const struct fe_model *model, const struct inertia *inertia,
+                      const double *from, const double *u, double *stress);
 
 /* Begins the ledger at a state in equilibrium with a load, or moving with a kinetic energy. */
 void energy_start(struct energy *energy, const struct fe_model *model, const struct fe_state *state,
@@ -34,6 +39,7 @@ void energy_start(struct energy *energy, const struct fe_model *model, const str
 /* What one accepted step has done besides changing state and load. */
 struct energy_step {
   double kinetic;       /* at its end */
+  double weight_work;   /* of a free object */
   double damping;       /* dissipated */
   double friction;      /* dissipated */
   double obstacle_work; /* done by obstacles on the body */

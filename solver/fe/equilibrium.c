@@ -65,18 +65,27 @@ static double *load_parameter(const struct equilibrium *s, struct fe_load *load)
   return s->control.dead ? &load->dead : &load->pressure;
 }
 
-/* After a factorisation under control: the response to the load parameter. */
+/* After a factorisation: under control the response to the load parameter, else the guest's. */
 static void renew_response(struct equilibrium *s, const struct fe_state *state) {
   if (s->control.active) {
     load_force(s, state, s->control.force);
     model_solve(s->model, s->control.force, s->control.response);
+  } else if (s->guest) {
+    s->guest->factored(s->guest->context);
   }
 }
 
+static const struct equilibrium_guest *guest_of(const struct equilibrium *s) {
+  return s->control.active ? NULL : s->guest;
+}
+
 /* The correction that belongs to the residual: K^-1 r; under control, together with the change of
- * the load parameter that keeps it normal to the control's normal. Returns that change. */
+ * the load parameter that keeps it normal to the control's normal, else with that of the guest.
+ * Returns that change. */
 static double correction(struct equilibrium *s, double *step) {
+  const struct equilibrium_guest *guest = guest_of(s);
   model_solve(s->model, s->model->residual, step);
+  s->guest_step = guest ? guest->correct(guest->context, step) : 0;
   if (!s->control.active) {
     return 0;
   }
@@ -87,9 +96,39 @@ static double correction(struct equilibrium *s, double *step) {
   return change;
 }
 
-/* state <- state (+) (-share * correction), pressures recovered alongside. */
+/* Size of the correction that has just been found, and its largest entry; the guest's included. */
+static double size_of(const struct equilibrium *s, const double *step) {
+  return s->guest_step > 0 ? rms(s, step) + s->guest_step : rms(s, step);
+}
+
+static double reach_of(const struct equilibrium *s, const double *step) {
+  return fmax(largest(s, step), s->guest_step);
+}
+
+/* The state before a trial, and back. */
+static void keep_state(struct equilibrium *s, const struct fe_state *state) {
+  const struct equilibrium_guest *guest = guest_of(s);
+  state_copy(s->model, &s->saved, state);
+  if (guest) {
+    guest->keep(guest->context);
+  }
+}
+
+static void take_back(struct equilibrium *s, struct fe_state *state) {
+  const struct equilibrium_guest *guest = guest_of(s);
+  state_copy(s->model, state, &s->saved);
+  if (guest) {
+    guest->restore(guest->context);
+  }
+}
+
+/* state <- state (+) (-share * correction), pressures recovered alongside; the guest moves, too. */
 static void apply(struct equilibrium *s, struct fe_state *state, double *correction, double share) {
+  const struct equilibrium_guest *guest = guest_of(s);
   struct fe_model *m = s->model;
+  if (guest) {
+    guest->move(guest->context, share);
+  }
   for (int d = 0; d < 3 * m->mesh->node_count; d++) {
     int equation = m->equation[d];
     s->increment[d] = equation >= 0 ? -share * correction[equation] : 0;
@@ -138,7 +177,7 @@ static enum status take_step(struct equilibrium *s, struct fe_load *load, double
   double *trial = s->chord, start = *load_parameter(s, load);
   double allowed = fmax(0.5 * m->contact.reach, 1.01 * obstacles_intrusion(m));
   enum status status = STATUS_OK;
-  state_copy(m, &s->saved, state);
+  keep_state(s, state);
   for (int attempt = 0; attempt < BACKTRACKS; attempt++) {
     memcpy(trial, s->step, sizeof *trial * (size_t)m->dof_count);
     apply(s, state, trial, *share);
@@ -148,7 +187,7 @@ static enum status take_step(struct equilibrium *s, struct fe_load *load, double
       return STATUS_OK;
     }
     *share *= 0.4;
-    state_copy(m, state, &s->saved);
+    take_back(s, state);
     *load_parameter(s, load) = start;
     /* The recovery needs the pressure residuals of this state again. */
     if (model_evaluate(m, state, load, false) != STATUS_OK) {
@@ -166,15 +205,15 @@ static bool polish(struct equilibrium *s, struct fe_load *load, struct fe_state 
   double limit = first_contraction, tolerance = s->options.step_tolerance;
   for (int k = 0; k < CHORD_STEPS; k++) {
     double change = correction(s, s->chord), *parameter = load_parameter(s, load);
-    double next = rms(s, s->chord);
+    double next = size_of(s, s->chord);
     if (!(next <= limit * size) && !(next < 0.1 * tolerance)) {
       return false;
     }
-    state_copy(m, &s->saved, state);
+    keep_state(s, state);
     apply(s, state, s->chord, 1);
     *parameter += change;
     if (model_evaluate(m, state, load, false) != STATUS_OK) {
-      state_copy(m, state, &s->saved);
+      take_back(s, state);
       *parameter -= change;
       model_evaluate(m, state, load, false);
       return false;
@@ -196,7 +235,7 @@ static bool polish(struct equilibrium *s, struct fe_load *load, struct fe_state 
  */
 static enum status step_and_polish(struct equilibrium *s, struct fe_load *load, double change,
                                    struct fe_state *state, double size, bool *converged) {
-  double most = largest(s, s->step);
+  double most = reach_of(s, s->step);
   double share = most > s->options.longest_step ? s->options.longest_step / most : 1;
   enum status status = take_step(s, load, change, state, most, &share);
   if (s->verbose) {
@@ -248,7 +287,7 @@ static enum status newton(struct equilibrium *s, struct fe_load *load, double st
     double change = correction(s, s->step);
     ++*iterations;
     m->statistics.newton_iterations++;
-    double size = rms(s, s->step);
+    double size = size_of(s, s->step);
     if (!isfinite(size) || stalled(&progress, size)) {
       return STATUS_DIVERGED;
     }
@@ -270,8 +309,8 @@ static enum status predict(struct equilibrium *s, struct fe_load *load, struct f
   if (model_evaluate(m, state, load, false) != STATUS_OK) {
     return STATUS_DIVERGED;
   }
-  model_solve(m, m->residual, s->step);
-  double size = rms(s, s->step);
+  correction(s, s->step);
+  double size = size_of(s, s->step);
   bool converged = false;
   if (isfinite(size)) {
     step_and_polish(s, load, 0, state, size, &converged);
@@ -444,21 +483,4 @@ enum status equilibrium_follow(struct equilibrium *s, struct fe_load *load, bool
   s->pressure_step = 0;
   s->factor_fits = false;
   return status;
-}
-
-void equilibrium_softest_mode(struct equilibrium *s, double *mode) {
-  enum { ITERATIONS = 8 };
-  int count = s->model->dof_count;
-  unsigned seed = 1;
-  for (int i = 0; i < count; i++) {
-    seed = 1664525u * seed + 1013904223u;
-    mode[i] = (double)(seed >> 8) / (1 << 23) - 1;
-  }
-  for (int k = 0; k < ITERATIONS; k++) {
-    model_solve(s->model, mode, mode);
-    double size = largest(s, mode);
-    for (int i = 0; i < count && size > 0; i++) {
-      mode[i] /= size;
-    }
-  }
 }

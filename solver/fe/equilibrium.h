@@ -29,6 +29,22 @@ struct equilibrium_control {
   double *response; /* dof_count: K^-1 force with the last factor */
 };
 
+/* Unknowns besides the displacements that are eliminated from every linear system: a rigid object
+ * that is free to move (solver/fe/free_object.h). They take no part in steps of arc length. */
+struct equilibrium_guest {
+  void *context;
+  /* The tangent has been evaluated and factorised. */
+  void (*factored)(void *context);
+  /* From step = K^-1 r (dof_count) of the body alone to that of both; the guest remembers its own
+   * part. Returns the size of that, m; INFINITY when there is no solution. */
+  double (*correct)(void *context, double *step);
+  /* Moves by -share of the part that it remembers. */
+  void (*move)(void *context, double share);
+  /* Before a trial, and when it is taken back. */
+  void (*keep)(void *context);
+  void (*restore)(void *context);
+};
+
 struct equilibrium {
   struct fe_model *model;
   struct retraction *retraction;
@@ -39,6 +55,8 @@ struct equilibrium {
   double *chord;         /* dof_count */
   double *increment;     /* node_count x 3 */
   struct equilibrium_control control;
+  const struct equilibrium_guest *guest; /* or NULL; borrowed */
+  double guest_step;                     /* size of the guest's last correction, m; else 0 */
   double *lambda_step;  /* change of every contact multiplier in the last solve, Pa */
   double pressure_step; /* change of the pressure in the last solve, Pa */
   bool factor_fits;     /* the factor is that of the last equilibrium, or next to it */

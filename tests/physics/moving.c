@@ -2,18 +2,12 @@
 
 #include <cblas.h>
 #include <check.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const struct fe_load unloaded = {0, 0, 0};
 
-void moving_open(struct moving *b, const struct material_spec *material) {
+static void open_rest(struct moving *b) {
   struct error error = {0};
-  openblas_set_num_threads(1);
-  enum status status = model_create(&b->mesh, material, false, &b->model, &error);
-  ck_assert_msg(status == STATUS_OK, "%s", error.message);
-  status = equilibrium_create(b->model, &b->solver, &error);
+  enum status status = equilibrium_create(b->model, &b->solver, &error);
   ck_assert_msg(status == STATUS_OK, "%s", error.message);
   status = dynamics_create(b->solver, &b->dynamics, &error);
   ck_assert_msg(status == STATUS_OK, "%s", error.message);
@@ -22,6 +16,27 @@ void moving_open(struct moving *b, const struct material_spec *material) {
   b->dynamics->options.fast = 1;
   b->dynamics->options.viscosity = 0;
   b->dynamics->options.tolerance = 1e-6 * b->solver->length;
+}
+
+static void open_model(struct moving *b, const struct material_spec *material) {
+  struct error error = {0};
+  openblas_set_num_threads(1);
+  enum status status = model_create(&b->mesh, material, false, &b->model, &error);
+  ck_assert_msg(status == STATUS_OK, "%s", error.message);
+}
+
+void moving_open(struct moving *b, const struct material_spec *material) {
+  open_model(b, material);
+  open_rest(b);
+}
+
+void moving_open_with(struct moving *b, const struct material_spec *material,
+                      const struct rigid_shape *shape, double friction, int *index) {
+  struct error error = {0};
+  open_model(b, material);
+  enum status status = model_add_obstacle(b->model, shape, friction, index, &error);
+  ck_assert_msg(status == STATUS_OK, "%s", error.message);
+  open_rest(b);
 }
 
 void moving_close(struct moving *b) {
@@ -55,38 +70,10 @@ void moving_block(struct moving *b, const double low[3], const double high[3], c
 }
 
 double moving_frequency(struct moving *b, double *mode) {
-  struct fe_model *m = b->model;
-  int count = 3 * m->mesh->node_count;
-  double *momentum = calloc((size_t)count, sizeof *momentum), square = 0;
-  ck_assert_ptr_nonnull(momentum);
-  ck_assert_int_eq(model_evaluate(m, &b->state, &unloaded, true), STATUS_OK);
-  ck_assert_int_eq(model_factor(m), 0);
-  unsigned seed = 1;
-  for (int i = 0; i < count; i++) {
-    mode[i] = m->equation[i] >= 0 ? 0.1 * body_random(&seed) + 1 : 0;
-  }
-  for (int k = 0; k < 40; k++) {
-    double up = 0, down = 0, most = 0;
-    inertia_multiply(b->dynamics->inertia, mode, momentum);
-    for (int i = 0; i < count; i++) {
-      if (m->equation[i] >= 0) {
-        m->residual[m->equation[i]] = momentum[i];
-      }
-    }
-    model_solve(m, m->residual, m->residual);
-    for (int i = 0; i < count; i++) {
-      mode[i] = m->equation[i] >= 0 ? m->residual[m->equation[i]] : 0;
-      up += mode[i] * momentum[i];
-      most = fmax(most, fabs(mode[i]));
-    }
-    down = 2 * inertia_kinetic(b->dynamics->inertia, mode);
-    square = up / down;
-    for (int i = 0; i < count; i++) {
-      mode[i] /= most;
-    }
-  }
-  free(momentum);
-  return sqrt(square);
+  double frequency;
+  ck_assert_int_eq(dynamics_frequency(b->dynamics, &unloaded, &b->state, mode, &frequency),
+                   STATUS_OK);
+  return frequency;
 }
 
 void moving_march(struct moving *b, double h, int count, struct energy *energy) {

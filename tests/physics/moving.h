@@ -15,6 +15,9 @@ struct moving {
 };
 
 void moving_open(struct moving *b, const struct material_spec *material);
+/* The same with a rigid obstacle, whose number *index receives. */
+void moving_open_with(struct moving *b, const struct material_spec *material,
+                      const struct rigid_shape *shape, double friction, int *index);
 void moving_close(struct moving *b);
 
 /* A block from `low` to `high` of cells[] elements, nothing held. */

@@ -6,6 +6,7 @@
 #include <string.h>
 #include "solver/verify/report.h"
 #include "solver/verify/strip.h"
+#include "solver/verify/timoshenko.h"
 #include "tests/physics/moving.h"
 #include "tests/physics/report.h"
 #include "tests/unit/suite.h"
@@ -78,56 +79,6 @@ START_TEST(first_axial_frequency_of_a_bar) {
 }
 END_TEST
 
-/* End moment and shear of a Timoshenko cantilever that vibrates with angular frequency w, for a
- * unit moment (k = 0) or shear (k = 1) at its clamp, by Runge-Kutta; square section, L = 1. */
-static void timoshenko(double edge, double w, int k, double end[2]) {
-  double e = young(), nu = poisson(), area = edge * edge, second = area * area / 12;
-  double shear = 10 * (1 + nu) / (12 + 11 * nu) * mu * area; /* Cowper 1966 */
-  double y[4] = {0, 0, k == 0, k == 1};                      /* way, turn, moment, shear force */
-  const int steps = 400;
-  const double h = 1.0 / steps, part[4] = {0, 0.5, 0.5, 1}, weight[4] = {1, 2, 2, 1};
-  for (int n = 0; n < steps; n++) {
-    double slope[4] = {0}, sum[4] = {0};
-    for (int stage = 0; stage < 4; stage++) {
-      double z[4];
-      for (int i = 0; i < 4; i++) {
-        z[i] = y[i] + part[stage] * h * slope[i];
-      }
-      slope[0] = z[1] + z[3] / shear;
-      slope[1] = z[2] / (e * second);
-      slope[2] = -z[3] - density * second * w * w * z[1];
-      slope[3] = -density * area * w * w * z[0];
-      for (int i = 0; i < 4; i++) {
-        sum[i] += weight[stage] * slope[i];
-      }
-    }
-    for (int i = 0; i < 4; i++) {
-      y[i] += h / 6 * sum[i];
-    }
-  }
-  end[0] = y[2];
-  end[1] = y[3];
-}
-
-static double timoshenko_frequency(double edge) {
-  double slender = 3.5160 * sqrt(young() / density * edge * edge / 12); /* Euler, Bernoulli */
-  double low = 0.8 * slender, high = 1.1 * slender, sign = 0;
-  for (int i = 0; i < 50; i++) {
-    double w = i == 0 ? low : 0.5 * (low + high), a[2], c[2];
-    timoshenko(edge, w, 0, a);
-    timoshenko(edge, w, 1, c);
-    double determinant = a[0] * c[1] - a[1] * c[0];
-    if (i == 0) {
-      sign = determinant;
-    } else if (determinant * sign > 0) {
-      low = w;
-    } else {
-      high = w;
-    }
-  }
-  return low;
-}
-
 static void cantilever_open(struct moving *b, double edge, int cells) {
   *b = (struct moving){.model = NULL};
   ck_assert_int_eq(strip_build(edge, cells, false, &b->mesh), STATUS_OK);
@@ -138,11 +89,12 @@ START_TEST(first_bending_frequency_of_a_cantilever) {
   const double edge = 0.1;
   struct moving b;
   cantilever_open(&b, edge, 16);
-  double *mode = vector_of(&b), slender = 3.5160 * sqrt(young() / density * edge * edge / 12);
-  report_value("bending frequency, Euler-Bernoulli", "16 elements", slender,
-               timoshenko_frequency(edge));
-  report_check("bending frequency, Timoshenko", "16 elements", timoshenko_frequency(edge),
-               moving_frequency(&b, mode), 2e-3);
+  struct timoshenko beam = {young(), mu, poisson(), density, edge};
+  double *mode = vector_of(&b), exact = timoshenko_frequency(&beam);
+  report_value("bending frequency, Euler-Bernoulli", "16 elements", timoshenko_slender(&beam),
+               exact);
+  report_check("bending frequency, Timoshenko", "16 elements", exact, moving_frequency(&b, mode),
+               1e-3);
   free(mode);
   moving_close(&b);
 }
