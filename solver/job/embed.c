@@ -10,6 +10,7 @@
 #include "solver/base/base64.h"
 #include "solver/base/text.h"
 #include "solver/job/json.h"
+#include "solver/rigid/stl.h"
 
 #define ANY "*"
 
@@ -91,10 +92,9 @@ static enum status refuse_open(struct embedding *embedding, const char *name) {
   return refuse_file(embedding, name, why);
 }
 
-/* Reads a whole file, unless `binary` one of text, into *text, NUL-terminated, owned by the caller.
- */
+/* Reads a whole file of text into *text, NUL-terminated, owned by the caller. */
 static enum status read_file(struct embedding *embedding, const char *path, const char *name,
-                             bool binary, char **text, size_t *size) {
+                             char **text, size_t *size) {
   struct stat properties;
   enum status status = STATUS_OK;
   /* Opening a pipe would wait for its writer. */
@@ -116,7 +116,7 @@ static enum status read_file(struct embedding *embedding, const char *path, cons
     status = refuse_file(embedding, name, "cannot be read to its end");
   } else if (*size > JSON_TEXT_MAX) {
     status = refuse_file(embedding, name, "is larger than 1 MiB, the most that a job may have");
-  } else if (!binary && memchr(buffer, '\0', *size)) {
+  } else if (memchr(buffer, '\0', *size)) {
     status = refuse_file(embedding, name, "is no text in UTF-8: it has NUL characters");
   }
   if (status == STATUS_OK) {
@@ -154,13 +154,41 @@ static json_t *text_value(const char *text, size_t size) {
   return value;
 }
 
-/* The content of a file in base64. NULL when memory runs out. */
-static json_t *binary_value(const char *content, size_t size) {
-  size_t length = 0;
-  char *text = base64_encode(content, size, &length);
-  json_t *value = text ? json_stringn(text, length) : NULL;
-  free(text);
-  return value;
+/* The triangles of a file as a binary one in base64, which is shorter than text. */
+static enum status read_surface(struct embedding *embedding, const char *path, const char *name,
+                                json_t **content) {
+  struct stl stl;
+  struct error *error = embedding->error;
+  char quoted[160], *text = NULL;
+  size_t size = 0, length = 0;
+  enum status status = stl_load(path, &stl, error);
+  text_quote(quoted, sizeof quoted, name);
+  if (status == STATUS_NO_MEMORY) {
+    return status;
+  }
+  if (status != STATUS_OK) {
+    if (error) {
+      error->status = STATUS_INVALID;
+      error_carry(error, embedding->pointer.text, "%s: ", quoted);
+    }
+    return STATUS_INVALID;
+  }
+  if (stl.count > EMBED_TRIANGLES_MAX) {
+    status =
+        error_set(error, STATUS_INVALID, embedding->pointer.text,
+                  "the surface %s has %d triangles\nat most %d, which fit into a job: simplify "
+                  "it",
+                  quoted, stl.count, EMBED_TRIANGLES_MAX);
+  } else {
+    unsigned char *data = stl_write(&stl, &size);
+    text = data ? base64_encode(data, size, &length) : NULL;
+    *content = text ? json_pack("{s:o}", "base64", json_stringn(text, length)) : NULL;
+    status = *content ? STATUS_OK : STATUS_NO_MEMORY;
+    free(data);
+    free(text);
+  }
+  stl_release(&stl);
+  return status;
 }
 
 /* The document of a base, its own files embedded. */
@@ -201,14 +229,15 @@ static enum status embed_one(struct embedding *embedding, json_t *parent, const 
   char *path = join_path(folder, name), *text = NULL;
   size_t size = 0;
   json_t *content = NULL;
-  bool binary = slot->content == CONTENT_SURFACE;
-  enum status status =
-      path ? read_file(embedding, path, name, binary, &text, &size) : STATUS_NO_MEMORY;
+  enum status status = path ? STATUS_OK : STATUS_NO_MEMORY;
+  if (status == STATUS_OK && slot->content == CONTENT_SURFACE) {
+    status = read_surface(embedding, path, name, &content);
+  } else if (status == STATUS_OK) {
+    status = read_file(embedding, path, name, &text, &size);
+  }
   if (status == STATUS_OK && slot->content == CONTENT_TABLE) {
     content = json_pack("{s:o}", "csv", text_value(text, size));
-  } else if (status == STATUS_OK && binary) {
-    content = json_pack("{s:o}", "base64", binary_value(text, size));
-  } else if (status == STATUS_OK) {
+  } else if (status == STATUS_OK && slot->content == CONTENT_DOCUMENT) {
     status = read_document(embedding, path, text, size, level, &content);
   }
   if (status == STATUS_OK && json_object_set_new(parent, slot->key, content) != 0) {

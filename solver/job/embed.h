@@ -9,7 +9,7 @@
  *   table   { "file": "curve.csv" }  becomes  { "csv": "text of the file" }
  *   base    { "file": "base.json" }  becomes  the document of that file, embedded likewise
  *   snap    { "file": "snap.json" }  becomes  the document of that file
- *   stl     { "file": "part.stl" }   becomes  { "base64": "content of the file" }
+ *   stl     { "file": "part.stl" }   becomes  { "base64": "its triangles as a binary file" }
  * A relative path starts at the folder of the file that names it. */
 #ifndef PNEULAB_JOB_EMBED_H
 #define PNEULAB_JOB_EMBED_H
@@ -18,12 +18,16 @@
 #include <stddef.h>
 #include "solver/base/error.h"
 
+/* Triangles of a surface that fit into a job: 50 bytes each, four characters for three bytes, and
+ * 64 KiB for the rest of it. */
+enum { EMBED_TRIANGLES_MAX = (((1 << 20) - (64 << 10)) / 4 * 3 - 84) / 50 };
+
 /* Embeds the files that the job in `text` names.
  * path: of the job's own file, or NULL when it has none: relative paths then start at the working
  * directory. *embedded: the self-contained document as text of *length bytes, to be freed by the
  * caller. Text without names of files is copied as it is.
  * STATUS_SYNTAX or TOO_LARGE as json_text_read; STATUS_INVALID with the pointer to the "file" that
- * cannot be read, is no text, or is larger than a job may be; STATUS_NO_MEMORY. */
+ * cannot be read, is no text (or no STL file), or is larger than a job may be; STATUS_NO_MEMORY. */
 enum status embed_files(const char *text, size_t size, const char *path, char **embedded,
                         size_t *length, struct error *error);
 

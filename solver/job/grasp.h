@@ -39,6 +39,7 @@ struct grasp_shape {
   unsigned char *stl; /* content of a file, stl_size bytes; NULL but for surfaces */
   size_t stl_size;
   double stl_unit; /* one unit of its coordinates */
+  double crease;   /* edges of its triangles stay sharp from this angle on, rad */
 };
 
 struct grasp_object {

@@ -3,6 +3,21 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "solver/rigid/stl.h"
+
+static enum status create_surface(const struct grasp_shape *s, struct rigid_shape **shape,
+                                  struct error *error) {
+  struct stl stl;
+  enum status status = stl_read(s->stl, s->stl_size, &stl, error);
+  if (status == STATUS_OK) {
+    status = rigid_shape_create_surface(&stl, s->stl_unit, s->crease, shape, error);
+    stl_release(&stl);
+  } else if (error && error->pointer[0] == '\0') {
+    snprintf(error->pointer, sizeof error->pointer, "/stl/base64");
+  }
+  return status;
+}
+
 static enum status create(const struct grasp_shape *s, struct rigid_shape **shape,
                           struct error *error) {
   switch (s->form) {
@@ -20,8 +35,7 @@ static enum status create(const struct grasp_shape *s, struct rigid_shape **shap
                                          s->smooth ? RIGID_PROFILE_SMOOTH : RIGID_PROFILE_STRAIGHT,
                                          s->rounding, shape, error);
   case GRASP_SURFACE:
-    return error_set(error, STATUS_GEOMETRY, "/stl",
-                     "surfaces are not read by this version\nanother form\n\"sphere\"");
+    return create_surface(s, shape, error);
   case GRASP_PLANE:
     break;
   }

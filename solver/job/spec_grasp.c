@@ -74,6 +74,7 @@ static enum status read_stl(const struct reader *reader, const json_t *value,
                     : has_word(value, "unit", "cm") ? 1e-2
                     : has_word(value, "unit", "in") ? 25.4e-3
                                                     : 1e-3;
+  shape->crease = reader_member(reader, value, "crease", "deg", RIGID_CREASE);
   return STATUS_OK;
 }
 

@@ -128,7 +128,7 @@ static enum status round_corners(struct meridian_piece *piece, int *count, int f
                                  double edge, struct error *error) {
   for (int at = to; edge > 0 && at >= from; at--) {
     if (!profile_round(piece, count, at, edge)) {
-      return error_set(error, STATUS_INVALID, "/edge",
+      return error_set(error, STATUS_INVALID, "/rim",
                        "an edge rounded by %g mm has no room at the corner (z %g mm, r %g mm) of "
                        "the profile\na smaller radius, or 0 for sharp edges",
                        1e3 * edge, 1e3 * piece[at].start[0], 1e3 * piece[at].start[1]);
@@ -215,7 +215,7 @@ enum status profile_pieces(const double (*point)[2], int count, enum rigid_profi
   double p[RIGID_PROFILE_POINTS][2];
   enum status status = check_points(point, count, error);
   if (status == STATUS_OK && !(edge >= 0 && edge <= LARGEST)) {
-    status = error_set(error, STATUS_INVALID, "/edge",
+    status = error_set(error, STATUS_INVALID, "/rim",
                        "the edges of the profile are rounded by %g mm\nfrom 0 (sharp) to what has "
                        "room\n\"1 mm\"",
                        1e3 * edge);

@@ -95,7 +95,7 @@ enum { RIGID_PROFILE_POINTS = 200 };
  * the circle through the points next to it. Three points on a line give a line.
  *
  * Beyond the sizes STATUS_INVALID for outlines that cross themselves, points that coincide (closer
- * than 1 um), corners too near for their edges. */
+ * than 1 um) ("/profile/3"), corners too near for their edges ("/rim"). */
 enum status rigid_shape_create_revolution(const double (*point)[2], int count,
                                           enum rigid_profile form, double edge,
                                           struct rigid_shape **shape, struct error *error);

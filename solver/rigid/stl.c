@@ -117,7 +117,8 @@ enum status stl_read(const unsigned char *data, size_t size, struct stl *stl, st
 /* ---- files ------------------------------------------------------------------------------ */
 
 static enum status refuse_system(const char *what, struct error *error) {
-  return error_set(error, STATUS_INVALID, NULL, "the STL file cannot be %s (%s)", what,
+  return error_set(error, STATUS_INVALID, NULL,
+                   "the STL file cannot be %s (%s)\na file that can be read", what,
                    strerror(errno));
 }
 
@@ -130,11 +131,12 @@ static enum status read_rest(FILE *file, const unsigned char *head, size_t known
   }
   memcpy(data, head, known);
   size_t length = known + fread(data + known, 1, size - known, file);
-  enum status status = length == size ? stl_read(data, size, stl, error)
-                                      : error_set(error, STATUS_INVALID, NULL,
-                                                  "of the %zu bytes of the STL file only %zu "
-                                                  "could be read",
-                                                  size, length);
+  enum status status = length == size
+                           ? stl_read(data, size, stl, error)
+                           : error_set(error, STATUS_INVALID, NULL,
+                                       "of the %zu bytes of the STL file only %zu "
+                                       "could be read\na file that can be read to its end",
+                                       size, length);
   free(data);
   return status;
 }
@@ -149,7 +151,8 @@ enum status stl_load(const char *path, struct stl *stl, struct error *error) {
     return refuse_system("opened", error);
   }
   if (!S_ISREG(properties.st_mode)) {
-    return error_set(error, STATUS_INVALID, NULL, "the STL file is not a regular file");
+    return error_set(error, STATUS_INVALID, NULL,
+                     "the STL file is not a regular file\na file that can be read");
   }
   if (properties.st_size > STL_FILE_MAX) {
     return error_set(error, STATUS_TOO_LARGE, NULL,

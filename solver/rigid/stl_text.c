@@ -50,9 +50,11 @@ static enum status refuse(const struct scan *scan, const char *wanted) {
   char quoted[40], repaired[WORD];
   memcpy(repaired, scan->word, sizeof repaired);
   text_repair(repaired);
-  return error_set(scan->error, STATUS_INVALID, NULL,
-                   "line %d of the STL file has %s where %s is due", scan->line,
-                   repaired[0] ? text_quote(quoted, sizeof quoted, repaired) : "its end", wanted);
+  return error_set(
+      scan->error, STATUS_INVALID, NULL,
+      "line %d of the STL file has %s where %s is due\nsolid NAME; for each triangle: facet "
+      "normal x y z, outer loop, three times vertex x y z, endloop, endfacet; endsolid",
+      scan->line, repaired[0] ? text_quote(quoted, sizeof quoted, repaired) : "its end", wanted);
 }
 
 static enum status expect(struct scan *scan, const char *word) {

@@ -19,7 +19,7 @@ while [ $# -gt 0 ]; do
   esac
   shift
 done
-[ "${#targets[@]}" -gt 0 ] || targets=(job csv units url http)
+[ "${#targets[@]}" -gt 0 ] || targets=(job csv units stl url http)
 source_dir=$(cd "$(dirname "$0")" && pwd)
 export ASAN_OPTIONS=detect_leaks=1:allocator_may_return_null=1
 export UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1

@@ -34,6 +34,16 @@ static void set_up(void) {
   write_file("latin.csv", "x (\xB5m)\n", 7);
   write_file("nul.csv", "x\0y", 3);
   write_file("bad.json", "{\n  oops }", 10);
+  static const char part[] =
+      "solid\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 0 1.5\n"
+      "endloop\nendfacet\nendsolid\n";
+  write_file("part.stl", part, sizeof part - 1);
+  write_file("bad.stl", part, sizeof part - 20);
+  char *many = calloc(1, 84 + 50 * 14744);
+  ck_assert_ptr_nonnull(many);
+  memcpy(many + 80, "\x98\x39", 2);
+  write_file("many.stl", many, 84 + 50 * 14744);
+  free(many);
   static const char base[] =
       "{\"kind\":\"response\",\"measured\":{\"data\":{\"file\":\"../a.csv\"}}}";
   write_file("sub/base.json", base, sizeof base - 1);
@@ -47,8 +57,9 @@ static void set_up(void) {
 }
 
 static void tear_down(void) {
-  static const char *const names[] = {"a.csv",         "latin.csv", "nul.csv",   "bad.json",
-                                      "sub/base.json", "loop.json", "large.csv", "sub"};
+  static const char *const names[] = {"part.stl",  "bad.stl",   "many.stl", "a.csv",
+                                      "latin.csv", "nul.csv",   "bad.json", "sub/base.json",
+                                      "loop.json", "large.csv", "sub"};
   char path[200];
   for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
     path_in_folder(path, sizeof path, names[i]);
@@ -112,15 +123,18 @@ START_TEST(tables_become_text) {
 END_TEST
 
 START_TEST(a_surface_becomes_base64) {
-  json_t *document = embed("{\"object\":{\"shape\":{\"stl\":{\"file\":\"nul.csv\"}}}}", NULL);
+  json_t *document = embed("{\"object\":{\"shape\":{\"stl\":{\"file\":\"part.stl\"}}}}", NULL);
   const json_t *shape = json_object_get(json_object_get(document, "object"), "shape");
   const char *text = string_at(shape, "stl", "base64", NULL);
-  ck_assert_str_eq(text, "eAB5");
-  unsigned char bytes[3];
+  ck_assert_ptr_nonnull(text);
+  unsigned char bytes[200];
   size_t size = 0;
+  ck_assert_uint_lt(strlen(text), sizeof bytes);
   ck_assert(base64_decode(text, strlen(text), bytes, &size));
-  ck_assert_uint_eq(size, 3);
-  ck_assert_mem_eq(bytes, "x\0y", 3);
+  /* One triangle in binary, whose last corner is (0, 0, 1.5). */
+  ck_assert_uint_eq(size, 84 + 50);
+  ck_assert_int_eq(bytes[80], 1);
+  ck_assert_mem_eq(bytes + 84 + 44, "\0\0\xC0\x3F", 4);
   json_decref(document);
 }
 END_TEST
@@ -203,6 +217,14 @@ static const struct {
      "/actuators/1/input/data/file", "No such file", 1},
     {"{\"laws\":{\"a\":{\"snap\":{\"file\":\"a.csv\"}}}}", STATUS_INVALID, "/laws/a/snap/file",
      "no job document", 1},
+    {"{\"object\":{\"shape\":{\"stl\":{\"file\":\"b.stl\"}}}}", STATUS_INVALID,
+     "/object/shape/stl/file", "\"b.stl\": the STL file cannot be opened (No such file", 1},
+    {"{\"object\":{\"shape\":{\"stl\":{\"file\":\"bad.stl\"}}}}", STATUS_INVALID,
+     "/object/shape/stl/file", "\"bad.stl\": line 7 of the STL file", 1},
+    {"{\"object\":{\"shape\":{\"stl\":{\"file\":\"many.stl\"}}}}", STATUS_INVALID,
+     "/object/shape/stl/file", "\"many.stl\" has 14744 triangles: at most 14743", 1},
+    {"{\"object\":{\"shape\":{\"stl\":{\"file\":\"large.csv\"}}}}", STATUS_INVALID,
+     "/object/shape/stl/file", "is cut off, or none", 1},
     {"{\"data\":", STATUS_SYNTAX, "", "", 1},
 };
 

@@ -271,9 +271,9 @@ START_TEST(profiles_that_cannot_be) {
   check_refused(bottle, 1, smooth, 0, "/profile", "1 points");
   check_refused((const double(*)[2])many, RIGID_PROFILE_POINTS + 1, smooth, 0, "/profile",
                 "from 2 to 200");
-  check_refused(bottle, COUNT(bottle), smooth, -1 * MM, "/edge", "-1 mm");
-  check_refused(bottle, COUNT(bottle), smooth, 14 * MM, "/edge", "has no room");
-  check_refused(spool, COUNT(spool), straight, 4 * MM, "/edge", "has no room");
+  check_refused(bottle, COUNT(bottle), smooth, -1 * MM, "/rim", "-1 mm");
+  check_refused(bottle, COUNT(bottle), smooth, 14 * MM, "/rim", "has no room");
+  check_refused(spool, COUNT(spool), straight, 4 * MM, "/rim", "has no room");
 }
 END_TEST
 

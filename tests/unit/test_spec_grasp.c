@@ -15,6 +15,19 @@ static const char grasp[] =
     "mm\"}, \"position\": [\"50 mm\", 0, \"-30 mm\"], \"friction\": 0.5}, \"grasp\": {\"pull\": "
     "{\"direction\": [2, 0, 0], \"distance\": \"50 mm\"}}}";
 
+/* The corner of a cube of 10 mm as a binary STL file, and without one of its faces. */
+#define TETRAHEDRON                                                                                \
+  "AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA"           \
+  "AAAAAAAAAAAAAAAAAAAAAAAEAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAIEEAAAAAAAAgQQAA"           \
+  "AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAACBBAAAAAAAAAAAAAAAAAAAAAAAAIEEAAAAAAAAA"           \
+  "AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAgQQAAAAAAACBBAAAAAAAAAAAAAAAAAAAAAAAAAAAgQQAA"           \
+  "AAAAAAAAAAAAAAAAIEEAAAAAAAAAAAAAAAAAACBBAAA="
+#define THREE_FACES                                                                                \
+  "AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA"           \
+  "AAAAAAAAAAAAAAAAAAAAAAADAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAIEEAAAAAAAAgQQAA"           \
+  "AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAACBBAAAAAAAAAAAAAAAAAAAAAAAAIEEAAAAAAAAA"           \
+  "AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAgQQAAAAAAACBBAAAAAAAA"
+
 #define SHAPE(text)                                                                                \
   { "/object/shape", "{\"form\": " text "}" }
 #define BLOCKED(more)                                                                              \
@@ -65,10 +78,19 @@ static const struct variant variants[] = {
      "/object/shape/profile",
      "encloses nothing"},
     {grasp, {SHAPE("\"plane\"")}, NULL, NULL},
+    {grasp, {SHAPE("\"surface\", \"stl\": {\"base64\": \"" TETRAHEDRON "\"}")}, NULL, NULL},
+    {grasp,
+     {SHAPE("\"surface\", \"stl\": {\"base64\": \"" THREE_FACES "\"}")},
+     "/object/shape/stl",
+     "3 triangles"},
     {grasp,
      {SHAPE("\"surface\", \"stl\": {\"base64\": \"c29saWQgYQ==\"}")},
-     "/object/shape/stl",
-     ""},
+     "/object/shape/stl/base64",
+     "\"facet\" or \"endsolid\""},
+    {grasp,
+     {SHAPE("\"surface\", \"stl\": {\"base64\": \"" TETRAHEDRON "\"}, \"crease\": \"190 deg\"")},
+     "/object/shape/crease",
+     "180"},
     {grasp,
      {SHAPE("\"surface\", \"stl\": {\"base64\": \"c29s?WQgYQ==\"}")},
      "/object/shape/stl/base64",
