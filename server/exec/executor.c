@@ -40,6 +40,14 @@ void executor_cancel(struct executor *executor, int64_t job_id) {
   }
 }
 
+void executor_recall(struct executor *executor) {
+  for (size_t i = 0; i < executor->engines; i++) {
+    if (executor->engine[i].methods->recall) {
+      executor->engine[i].methods->recall(executor->engine[i].self);
+    }
+  }
+}
+
 bool executor_progress(struct executor *executor, int64_t job_id, struct progress *progress) {
   bool found = false;
   for (size_t i = 0; i < executor->engines && !found; i++) {

@@ -23,8 +23,10 @@ struct engine_methods {
   const char *name; /* "local", as logs and views have it */
   /* A job may have become ready. */
   void (*wake)(void *engine);
-  /* The store has marked the job cancelling, or has taken it back: its worker is to end. */
+  /* The store has marked the job cancelling: its worker is to end. */
   void (*cancel)(void *engine, int64_t job_id);
+  /* The store may have taken back jobs that wait with the engine. May be NULL. */
+  void (*recall)(void *engine);
   /* What a running job has reported; false when it does not run here. */
   bool (*progress)(void *engine, int64_t job_id, struct progress *progress);
   /* Where a job is and what it waits for, as an object for people, a new reference; NULL when there
@@ -81,6 +83,9 @@ void executor_wake(struct executor *executor);
 
 /* Ends the worker of a job that the store has marked cancelling, if one runs. */
 void executor_cancel(struct executor *executor, int64_t job_id);
+
+/* Tells that jobs may have been taken back from a cluster into the queue. */
+void executor_recall(struct executor *executor);
 
 /* What a running job has reported; false when it does not run here. */
 bool executor_progress(struct executor *executor, int64_t job_id, struct progress *progress);

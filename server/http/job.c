@@ -93,6 +93,7 @@ static void job_hold_set(struct request *request, struct reply *reply, bool hold
     reply_error(reply, &error);
     return;
   }
+  executor_recall(request->service->executor);
   executor_wake(request->service->executor);
   conductor_wake(request->service->conductor);
   job_view_reply(request, reply, 200, id, false);

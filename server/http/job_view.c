@@ -43,7 +43,8 @@ static void progress_set(const struct service *service, const struct job_record 
 static void cluster_set(const struct service *service, const struct job_record *record,
                         json_t *view) {
   bool waits = record->state == JOB_STATE_QUEUED || record->state == JOB_STATE_RETRY_WAIT;
-  json_t *place = job_state_terminal(record->state) || strcmp(record->kind, "study") == 0
+  bool none = job_state_terminal(record->state) || record->state == JOB_STATE_HELD;
+  json_t *place = none || strcmp(record->kind, "study") == 0
                       ? NULL
                       : executor_place(service->executor, record->id, record->engine, waits);
   if (place) {

@@ -96,6 +96,8 @@ void job_patch(struct request *request, struct reply *reply) {
     reply_error(reply, &error);
     return;
   }
+  executor_recall(request->service->executor);
+  executor_wake(request->service->executor);
   conductor_wake(request->service->conductor);
   job_view_reply(request, reply, 200, id, false);
 }

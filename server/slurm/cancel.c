@@ -101,6 +101,48 @@ static void look_at_task(struct slurm_task *task, int64_t now) {
   }
 }
 
+/* Members of a batch whose attempts are not open any more. */
+static void recall_batch(struct slurm_batch *batch) {
+  struct slurm *slurm = batch->slurm;
+  struct cluster_attempt *open = NULL;
+  size_t count = 0, at = 0;
+  if (store_batch_attempts(slurm->settings.engine.store, batch->id, &open, &count, NULL) !=
+      STATUS_OK) {
+    return;
+  }
+  for (size_t i = 0; i < batch->count; i++) {
+    struct slurm_task *task = &batch->task[i];
+    for (size_t k = 0; k < task->count; k++) {
+      struct slurm_member *member = &task->member[k];
+      while (at < count && (open[at].task < (int64_t)i ||
+                            (open[at].task == (int64_t)i && open[at].place < (int64_t)k))) {
+        at++;
+      }
+      bool there = at < count && open[at].task == (int64_t)i && open[at].place == (int64_t)k;
+      if (!there && !member->settled) {
+        pthread_mutex_lock(&slurm->mutex);
+        member->gone = member->cancel = slurm->cancels = true;
+        pthread_mutex_unlock(&slurm->mutex);
+      }
+    }
+  }
+  free(open);
+}
+
+void slurm_recall(struct slurm *slurm) {
+  pthread_mutex_lock(&slurm->mutex);
+  bool wanted = slurm->recall;
+  slurm->recall = false;
+  pthread_mutex_unlock(&slurm->mutex);
+  if (!wanted) {
+    return;
+  }
+  ends_flush(slurm);
+  for (struct slurm_batch *batch = slurm->first; batch; batch = batch->next) {
+    recall_batch(batch);
+  }
+}
+
 void slurm_cancels(struct slurm *slurm) {
   struct calls *kills = calloc(1, sizeof *kills), *signals = calloc(1, sizeof *signals);
   int64_t now = clock_monotonic_ms();

@@ -8,19 +8,23 @@ void ends_add(struct slurm *slurm, struct slurm_member *member, struct outcome *
   if (slurm->ends == ENDS_MAX) {
     ends_flush(slurm);
   }
+  pthread_mutex_lock(&slurm->mutex);
+  member->settled = true;
+  index_remove(&slurm->index, member);
+  slurm->members--;
+  member->task->open--;
+  pthread_mutex_unlock(&slurm->mutex);
+  if (member->gone) {
+    outcome_clear(outcome);
+    return;
+  }
   struct slurm_end *end = &slurm->end[slurm->ends++];
   end->member = member;
   end->outcome = *outcome;
   end->outcome.attempt.reason_code = end->outcome.reason_code; /* the texts have moved with it */
   end->outcome.attempt.message = end->outcome.message;
-  member->settled = true;
   ending_fill(&slurm->ending, member->job_id, member->attempt, slurm->troubles, end->directory,
               &end->outcome);
-  pthread_mutex_lock(&slurm->mutex);
-  index_remove(&slurm->index, member);
-  slurm->members--;
-  member->task->open--;
-  pthread_mutex_unlock(&slurm->mutex);
 }
 
 void ends_flush(struct slurm *slurm) {

@@ -12,8 +12,9 @@
 #include "server/slurm/metrics.h"
 #include "server/slurm/slurm_internal.h"
 
-/* Looks at the files of tasks: as often as keeps their processor time below 1/LOOK_SHARE of a core;
- * at the progress of members more rarely; commands of the cluster may take COMMAND_MS. */
+/* Looks at the files of tasks that find nothing: as often as keeps their processor time below
+ * 1/LOOK_SHARE of a core; at the progress of members more rarely; commands of the cluster may take
+ * COMMAND_MS. */
 enum {
   LOOK_MS = 200,
   LOOK_MOST_MS = 5000,
@@ -92,6 +93,7 @@ static void look(struct slurm *slurm) {
   int64_t now = clock_monotonic_ms();
   struct timespec before, after;
   bool progress = now >= slurm->progress_at_ms;
+  bool any = false;
   struct slurm_batch *next;
   if (now < slurm->look_at_ms) {
     return;
@@ -99,17 +101,17 @@ static void look(struct slurm *slurm) {
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &before);
   for (struct slurm_batch *batch = slurm->first; batch; batch = next) {
     next = batch->next;
-    batch_look(batch, progress);
+    any = batch_look(batch, progress) || any;
     if (batch->open == 0) {
       batch_drop(batch);
     }
   }
-  ends_flush(slurm);
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &after);
+  ends_flush(slurm);
   double took_s =
       (double)(after.tv_sec - before.tv_sec) + 1e-9 * (double)(after.tv_nsec - before.tv_nsec);
   int64_t pace_ms = (int64_t)(1000 * took_s * LOOK_SHARE);
-  pace_ms = pace_ms < LOOK_MS ? LOOK_MS : pace_ms;
+  pace_ms = pace_ms < LOOK_MS || any ? LOOK_MS : pace_ms; /* what is new takes time of its own */
   slurm->look_at_ms = now + (pace_ms < LOOK_MOST_MS ? pace_ms : LOOK_MOST_MS);
   if (progress) {
     slurm->progress_at_ms = now + PROGRESS_MS;
@@ -142,6 +144,7 @@ static bool await_news(struct slurm *slurm) {
 static void *slurm_main(void *context) {
   struct slurm *slurm = context;
   while (await_news(slurm)) {
+    slurm_recall(slurm);
     slurm_cancels(slurm);
     look(slurm);
     slurm_poll(slurm);
@@ -173,6 +176,15 @@ static void engine_cancel(void *engine, int64_t job_id) {
     slurm->cancels = slurm->woken = true;
     pthread_cond_signal(&slurm->news);
   }
+  pthread_mutex_unlock(&slurm->mutex);
+}
+
+/* What the store has taken back is found by comparing. */
+static void engine_recall(void *engine) {
+  struct slurm *slurm = engine;
+  pthread_mutex_lock(&slurm->mutex);
+  slurm->recall = slurm->woken = true;
+  pthread_cond_signal(&slurm->news);
   pthread_mutex_unlock(&slurm->mutex);
 }
 
@@ -221,7 +233,7 @@ static json_t *engine_place(void *engine, int64_t job_id, enum store_engine aske
   json_t *place = NULL;
   pthread_mutex_lock(&slurm->mutex);
   const struct slurm_member *member = index_find(&slurm->index, job_id);
-  if (member) {
+  if (member && !waits) {
     place = task_place(slurm, member);
   } else if (waits && ours && slurm->trouble[0]) {
     place =
@@ -289,9 +301,19 @@ static void engine_destroy(void *engine) {
 
 /* What the programs of the cluster, and thereby tasks, have of the daemon's environment. */
 static enum status environment_make(struct slurm *slurm, struct error *error) {
-  static const char *const kept[] = {"PATH",          "HOME",        "USER",         "LOGNAME",
-                                     "SLURM_CONF",    "TZ",          "ASAN_OPTIONS", "LSAN_OPTIONS",
-                                     "UBSAN_OPTIONS", "TSAN_OPTIONS"};
+  static const char *const kept[] = {"PATH",
+                                     "HOME",
+                                     "USER",
+                                     "LOGNAME",
+                                     "SLURM_CONF",
+                                     "LANG",
+                                     "TZ",
+                                     "OPENBLAS_CORETYPE",
+                                     "UDUNITS2_XML_PATH",
+                                     "ASAN_OPTIONS",
+                                     "LSAN_OPTIONS",
+                                     "UBSAN_OPTIONS",
+                                     "TSAN_OPTIONS"};
   enum { KEPT = sizeof kept / sizeof *kept };
   size_t count = 0;
   slurm->environment = calloc(KEPT + 3, sizeof *slurm->environment);
@@ -353,6 +375,7 @@ enum status slurm_create(const struct slurm_settings *settings, struct engine *e
   static const struct engine_methods methods = {.name = "slurm",
                                                 .wake = engine_wake,
                                                 .cancel = engine_cancel,
+                                                .recall = engine_recall,
                                                 .progress = engine_progress,
                                                 .place = engine_place,
                                                 .check = engine_check,

@@ -28,6 +28,7 @@ struct slurm_member {
   bool cancel;  /* it is to end; under the mutex */
   bool told;    /* the task knows */
   bool noted;   /* that it runs is in the database */
+  bool gone;    /* its attempt has ended without us: nothing is stored of it */
   bool settled; /* its outcome is stored, or it was none of ours */
 };
 
@@ -118,7 +119,7 @@ struct slurm {
 
   pthread_mutex_t mutex; /* guards what follows up to `first`, and what says so above */
   pthread_cond_t news;
-  bool woken, cancels, draining, stopping, planning;
+  bool woken, cancels, recall, draining, stopping, planning;
   bool reachable, asked; /* whether the cluster answered last, and was asked at all */
   char trouble[300];     /* why jobs wait: the cluster does not answer, or refuses; "" for none */
   void *index;           /* search tree of members by job */
@@ -163,7 +164,7 @@ bool member_paths(const struct slurm *slurm, const struct slurm_member *member,
 
 /* ---- ends.c ------------------------------------------------------------------------------- */
 
-/* Takes over an outcome of a member, which is settled by it. */
+/* Takes over an outcome of a member, which is settled by it; of one that is gone it is dropped. */
 void ends_add(struct slurm *slurm, struct slurm_member *member, struct outcome *outcome);
 
 /* Stores all of them. */
@@ -229,6 +230,9 @@ void slurm_poll(struct slurm *slurm);
 
 /* Wants the next poll at the latest in so many ms. */
 void slurm_poll_soon(struct slurm *slurm, int64_t ms);
+
+/* Looks for attempts that the store has taken back: they are to end, too. */
+void slurm_recall(struct slurm *slurm);
 
 /* Lets requests to end reach their tasks. */
 void slurm_cancels(struct slurm *slurm);

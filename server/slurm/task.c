@@ -186,9 +186,9 @@ static void note_running(struct slurm_task *task, struct slurm_member *member) {
   member->noted = true;
   if (status == STATUS_OK) {
     settings->changed(settings->context, member->job_id);
-  } else if (status == STATUS_CONFLICT) {
+  } else if (status == STATUS_CONFLICT) { /* it is cancelled, or was taken back */
     pthread_mutex_lock(&slurm->mutex);
-    member->cancel = true;
+    member->cancel = slurm->recall = true;
     slurm->cancels = true;
     pthread_mutex_unlock(&slurm->mutex);
   } else {

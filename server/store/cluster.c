@@ -1,6 +1,5 @@
 #include "server/store/cluster.h"
 
-#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -231,26 +230,28 @@ enum status store_job_partition(struct store *store, int64_t id, char partition[
   return status;
 }
 
-enum status store_job_withdraw(struct store *store, int64_t id, const char *why,
-                               struct error *error) {
-  enum status status = store_write_begin(store, error);
-  if (status != STATUS_OK) {
-    return status;
-  }
-  sqlite3 *db = store->writer;
-  status = sql_run(db, error,
-                   "UPDATE attempt SET outcome = 'requeued', reason_code = ?1, message = "
-                   "'Taken back from the queue of the cluster.', finished_ms = ?2 "
-                   "WHERE job_id = ?3 AND outcome = '' AND batch_id IS NOT NULL "
-                   "AND (SELECT state FROM job WHERE id = ?3) = 'starting'",
-                   "tii", why, clock_unix_ms(), id);
-  if (status == STATUS_OK && sqlite3_changes(db) == 0) {
-    status =
-        error_set(error, STATUS_CONFLICT, NULL, "Job %" PRId64 " does not wait on a cluster.", id);
-  }
-  if (status == STATUS_OK) {
-    status = sql_run(db, error, "UPDATE job SET state = 'queued', reason_code = '' WHERE id = ?",
-                     "i", id);
-  }
-  return store_write_end(store, status, error);
+/* The jobs of a withdrawal: ?1 is the job or study. */
+#define OF_JOB "job.id = ?1"
+#define OF_STUDY "job.study_id = ?1"
+#define OF_PRIORITY                                                                                \
+  OF_STUDY " AND job.priority <> (SELECT priority FROM job AS study WHERE study.id = ?1)"
+#define CLOSE(JOBS)                                                                                \
+  "UPDATE attempt SET outcome = 'requeued', reason_code = 'withdrawn', finished_ms = ?2, message " \
+  "= 'Taken back from the queue of the cluster.' WHERE outcome = '' AND batch_id IS NOT NULL "     \
+  "AND job_id IN (SELECT job.id FROM job WHERE " JOBS " AND state = 'starting' LIMIT ?3)"
+#define QUEUE(JOBS)                                                                                \
+  "UPDATE job SET state = 'queued', reason_code = '', message = '' WHERE " JOBS                    \
+  " AND state = 'starting' AND NOT EXISTS (SELECT 1 FROM attempt WHERE attempt.job_id = job.id "   \
+  "AND attempt.outcome = '')"
+
+enum status cluster_withdraw(sqlite3 *db, int64_t id, enum withdrawal whose, int most, int *count,
+                             struct error *error) {
+  static const char *const texts[][2] = {
+      [WITHDRAW_JOB] = {CLOSE(OF_JOB), QUEUE(OF_JOB)},
+      [WITHDRAW_STUDY] = {CLOSE(OF_STUDY), QUEUE(OF_STUDY)},
+      [WITHDRAW_PRIORITY] = {CLOSE(OF_PRIORITY), QUEUE(OF_PRIORITY)}};
+  enum status status =
+      sql_run(db, error, texts[whose][0], "iii", id, clock_unix_ms(), (int64_t)most);
+  *count = status == STATUS_OK ? sqlite3_changes(db) : 0;
+  return *count > 0 ? sql_run(db, error, texts[whose][1], "i", id) : status;
 }

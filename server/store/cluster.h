@@ -62,10 +62,4 @@ enum status store_batch_attempts(struct store *store, int64_t id, struct cluster
 enum status store_job_partition(struct store *store, int64_t id, char partition[CLUSTER_WORD_SIZE],
                                 struct error *error);
 
-/* Takes a job that waits on the cluster back into the queue: `starting` -> `queued`, its attempt
- * ends as requeued with the reason `why`. STATUS_CONFLICT, with nothing written, for a job in
- * another state or of another engine. */
-enum status store_job_withdraw(struct store *store, int64_t id, const char *why,
-                               struct error *error);
-
 #endif

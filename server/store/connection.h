@@ -95,6 +95,14 @@ enum status queue_take(struct store *store, const struct claim *claim, int64_t n
  * write transaction; what has been appended to the claim is freed with it. */
 enum status chain_claim(struct store *store, struct claim *claim, int64_t now, struct error *error);
 
+/* Whose: one job, the members of a study, or those of them that have not its priority. */
+enum withdrawal { WITHDRAW_JOB, WITHDRAW_STUDY, WITHDRAW_PRIORITY };
+
+/* Takes up to `most` jobs that wait with a cluster back into the queue: `starting` -> `queued`;
+ * their attempts end. *count: how many. In a write transaction. */
+enum status cluster_withdraw(sqlite3 *db, int64_t id, enum withdrawal whose, int most, int *count,
+                             struct error *error);
+
 /* The engine that a value of the label "executor" (or NULL) asks for. */
 enum store_engine engine_of_label(const char *value);
 

@@ -125,7 +125,13 @@ enum status store_patch(struct store *store, int64_t id, const json_t *patch, st
   if (status != STATUS_OK) {
     return status;
   }
-  status = store_state_of(store->writer, id, &state, error);
+  if (json_object_get(patch, "priority")) { /* it counts in our queue */
+    int withdrawn;
+    status = cluster_withdraw(store->writer, id, WITHDRAW_JOB, 1, &withdrawn, error);
+  }
+  if (status == STATUS_OK) {
+    status = store_state_of(store->writer, id, &state, error);
+  }
   if (status == STATUS_OK) {
     status = patch_allowed(store->writer, id, state, patch, error);
   }

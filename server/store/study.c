@@ -278,6 +278,15 @@ enum status store_study_follow(struct store *store, int64_t id, enum study_order
   if (status != STATUS_OK) {
     return status;
   }
+  int withdrawn = 0;
+  if (order == STUDY_HOLD || order == STUDY_PRIORITY) {
+    status = cluster_withdraw(store->writer, id,
+                              order == STUDY_HOLD ? WITHDRAW_STUDY : WITHDRAW_PRIORITY, most,
+                              &withdrawn, error);
+  }
+  if (status != STATUS_OK) {
+    return store_write_end(store, status, error);
+  }
   if (order == STUDY_CANCEL) {
     status = sql_run(store->writer, error, texts[order], "iii", id, (int64_t)most, clock_unix_ms());
   } else {

@@ -246,7 +246,12 @@ enum status store_hold(struct store *store, int64_t id, bool hold, struct error 
   if (status != STATUS_OK) {
     return status;
   }
-  status = hold_allowed(store->writer, id, hold, &runs, error);
+  int withdrawn;
+  status =
+      hold ? cluster_withdraw(store->writer, id, WITHDRAW_JOB, 1, &withdrawn, error) : STATUS_OK;
+  if (status == STATUS_OK) {
+    status = hold_allowed(store->writer, id, hold, &runs, error); /* or all is undone */
+  }
   if (status == STATUS_OK && runs) {
     status = study_pause(store->writer, id, error);
   }

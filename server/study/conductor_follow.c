@@ -27,6 +27,8 @@ bool conductor_follow(struct conductor *conductor, int64_t id, enum study_order 
   }
   if (count > 0 && order == STUDY_RELEASE) {
     executor_wake(conductor->executor);
+  } else if (count > 0 && order != STUDY_CANCEL) {
+    executor_recall(conductor->executor);
   }
   return count == FOLLOW_MAX;
 }
