@@ -5,6 +5,7 @@
 #include <string.h>
 #include "solver/base/clock.h"
 #include "solver/fe/obstacle_internal.h"
+#include "solver/fe/settling.h"
 
 enum {
   STALL_ITERATIONS = 5, /* give up after so many without a smaller correction */
@@ -360,16 +361,17 @@ static bool settled(const struct equilibrium *s, double change, int updates) {
 static enum status augment(struct equilibrium *s, struct fe_load *load, struct fe_state *state,
                            int *iterations) {
   struct fe_model *m = s->model;
-  double relaxation = 0, rubbing = 0, change = INFINITY, shift = 0;
+  double relaxation = 0, change = INFINITY, shift = 0;
   s->moved = INFINITY;
+  if (s->settling) {
+    settling_restart(s->settling);
+  }
   for (int k = 0; k < AUGMENTATIONS; k++) {
     enum status status = meet(s, load, state);
-    if (status == STATUS_OK && m->obstacle_count > 0) {
-      status = obstacles_update(m, state->u, &rubbing, &shift);
-    }
     if (status != STATUS_OK) {
       return status;
     }
+    shift = s->settling ? settling_measure(s->settling, m) : 0;
     change = contact_update_multipliers(&m->contact, &relaxation);
     if (s->verbose) {
       struct contact_summary c = contact_summarise(&m->contact);
@@ -379,6 +381,9 @@ static enum status augment(struct equilibrium *s, struct fe_load *load, struct f
     }
     if (settled(s, change, k) && shift < s->options.force_tolerance) {
       return STATUS_OK;
+    }
+    if (s->settling) {
+      settling_update(s->settling, m);
     }
     s->moved = 0;
     status = rebalance(s, load, state, iterations);

@@ -57,10 +57,11 @@ struct equilibrium {
   struct equilibrium_control control;
   const struct equilibrium_guest *guest; /* or NULL; borrowed */
   double guest_step;                     /* size of the guest's last correction, m; else 0 */
-  double *lambda_step;  /* change of every contact multiplier in the last solve, Pa */
-  double pressure_step; /* change of the pressure in the last solve, Pa */
-  bool factor_fits;     /* the factor is that of the last equilibrium, or next to it */
-  int negative_pivots;  /* of the last factorisation */
+  struct settling *settling; /* of the multipliers of rigid objects; NULL without them */
+  double *lambda_step;       /* change of every contact multiplier in the last solve, Pa */
+  double pressure_step;      /* change of the pressure in the last solve, Pa */
+  bool factor_fits;          /* the factor is that of the last equilibrium, or next to it */
+  int negative_pivots;       /* of the last factorisation */
   int fewest_negative, most_negative; /* over the factorisations of the last solve */
   double moved; /* sum of the rms of corrections since it was last set to 0, m */
   int verbose;  /* 1: a line an iteration on standard error */

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include "solver/fe/equilibrium.h"
+#include "solver/fe/settling.h"
 
 static double body_length(const struct mesh *mesh) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -37,10 +38,11 @@ enum status equilibrium_create(struct fe_model *model, struct equilibrium **out,
   s->control.normal = calloc((size_t)model->dof_count + 1, sizeof *s->control.normal);
   s->control.force = calloc((size_t)model->dof_count + 1, sizeof *s->control.force);
   s->control.response = calloc((size_t)model->dof_count + 1, sizeof *s->control.response);
+  s->settling = model->obstacle_count > 0 ? settling_create(model) : NULL;
   s->increment = calloc(3 * (size_t)model->mesh->node_count, sizeof *s->increment);
   if (!s->retraction || !s->step || !s->chord || !s->increment || !s->lambda_step ||
-      !s->control.normal || !s->control.force || !s->control.response ||
-      state_create(model, &s->saved) != STATUS_OK) {
+      (model->obstacle_count > 0 && !s->settling) || !s->control.normal || !s->control.force ||
+      !s->control.response || state_create(model, &s->saved) != STATUS_OK) {
     equilibrium_destroy(s);
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the solver");
   }
@@ -53,6 +55,7 @@ void equilibrium_destroy(struct equilibrium *s) {
     return;
   }
   retraction_destroy(s->retraction);
+  settling_destroy(s->settling);
   state_release(&s->saved);
   free(s->step);
   free(s->chord);

@@ -92,12 +92,13 @@ static double commit_point(const struct obstacle *o, struct obstacle_point *poin
     for (int i = 0; i < 3; i++) {
       double end = -traction[i], start = rubbed ? memory->rubbed[i] : end;
       work += 0.5 * point->area * (start + end) * slip[i];
-      memory->rubbed[i] = end;
+      memory->rubbed[i] = memory->traction[i] = end; /* the traction stays, without slip */
     }
+  } else {
+    rigid_pose_turn_inward(&o->pose, point->normal, memory->normal);
   }
   memory->held = true;
   rigid_pose_inward(&o->pose, point->x, memory->anchor);
-  rigid_pose_turn_inward(&o->pose, point->normal, memory->normal);
   return work;
 }
 

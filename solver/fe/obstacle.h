@@ -46,8 +46,8 @@ struct obstacle_point {
   double pressure;    /* Pa */
   double friction[3]; /* tangential traction on the body, Pa */
   double slip[3];     /* of the body on the object from the stick point, m */
+  double wanted;      /* pressure that lambda is to become: see obstacle_smooth, Pa */
   bool slips;
-  double change[4]; /* of lambda and tau wanted by the last update, Pa */
 };
 
 /* One object. */

@@ -52,11 +52,28 @@ void obstacles_keep(const struct fe_model *model, struct fe_state *state);
 /* Number of points and objects in a state's memory. */
 size_t obstacles_memory_count(const struct fe_model *model);
 
-/* Moves the multipliers to the tractions of the last evaluation, at displacements u, and the
- * normals with them. *relaxation as in contact_update_multipliers. Returns by how much the nodal
- * forces of the objects have changed with it, as a fraction of these forces. STATUS_NO_MEMORY. */
-enum status obstacles_update(struct fe_model *model, const double *u, double *relaxation,
-                             double *change);
+enum {
+  OBSTACLE_VALUES = 4, /* multipliers of a point: lambda and the vector tau, Pa */
+  OBSTACLE_ROOM = 5
+};
+
+/* Fills point->wanted of an object: the pressures, made continuous and bilinear over the faces that
+ * touch with all their points. They have more points than their nodes can keep apart from a curved
+ * object, and pressures that jump from face to face would bend a thin wall to and fro; what the
+ * pressure does beyond that is left to eps. Every face keeps its force. room: OBSTACLE_ROOM times
+ * mesh->node_count. */
+void obstacle_smooth(const struct fe_model *model, struct obstacle *obstacle, double *room);
+
+/* Multipliers of the points of face f, and by how much they have to change to be the tractions that
+ * are wanted. */
+void obstacle_face_multipliers(const struct obstacle *obstacle, int f,
+                               double value[QUAD9_POINTS][OBSTACLE_VALUES],
+                               double change[QUAD9_POINTS][OBSTACLE_VALUES]);
+
+/* Gives the points of face f these multipliers, lambda at least 0 and tau turned into the tangent
+ * plane at the present place of the point. */
+void obstacle_face_set(const struct obstacle *obstacle, int f,
+                       double value[QUAD9_POINTS][OBSTACLE_VALUES]);
 
 /* Deepest overlap at the last evaluation, m, >= 0. */
 double obstacles_intrusion(const struct fe_model *model);
