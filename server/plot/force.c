@@ -84,7 +84,7 @@ static void draw_chart(struct canvas *canvas, const struct plot_input *input,
                         .series_count = bundle->count,
                         .labels = remarks->labels,
                         .label_count = remarks->label_count,
-                        .mark = isfinite(remarks->slips.x) ? &remarks->slips : NULL,
+                        .mark = remarks->slips.x > 0 ? &remarks->slips : NULL,
                         .mark_text = remarks->slip,
                         .empty = "The object was not pulled"};
   chart_draw(&chart, canvas);
