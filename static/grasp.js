@@ -53,7 +53,7 @@ class Grasp {
     this.playMs = 6000;
     this.lines = [];
     const { body, edges } = stillGeometry(object.quads, object.place);
-    this.held = posed(frames[0].pose, surfaceMesh(body, { side: FrontSide, transparent: true, opacity: 0.5,
+    this.held = posed(frames[0].pose, surfaceMesh(body, { side: FrontSide, transparent: true, opacity: 0.42,
       depthWrite: false }), this.line(edges));
     this.fingers = fingers.map((finger) => posed(finger.pose,
       surfaceMesh(this.skins[finger.body].body), this.line(this.skins[finger.body].edges)));
