@@ -4,11 +4,13 @@ import glob
 import re
 import subprocess
 
-FOLDERS = ("solver/base", "solver/job", "server/base", "server/auth", "server/exec", "server/http")
-PARSERS = ("json json_memory schema schema_* spec spec_* embed study study_* trials steps tensile "
-           "measured parameter mirror *_check bistable hlpv units table text error numbers url "
-           "request guard option options token_file token_command progress outcome route access "
-           "session events event_text cache jobs submission patch retry").split()
+FOLDERS = ("solver/base", "solver/job", "solver/rigid", "server/base", "server/auth", "server/exec",
+           "server/http")
+PARSERS = ("json json_memory schema schema_* spec spec_* embed study study_* trials steps "
+           "tensile measured parameter mirror *_check bistable hlpv stl stl_text surface_weld "
+           "profile units table text error numbers url request guard option options token_file "
+           "token_command progress outcome route access session events event_text cache jobs "
+           "submission patch retry").split()
 
 
 def branches(notes, source):

@@ -89,10 +89,10 @@ enum { RIGID_PROFILE_POINTS = 200 };
  * tangent is that of the circle through this point and both neighbours; where z or r turns round
  * there, or a straight part along or across the axis begins, it is along or across the axis. So
  * between neighbours neither z nor r leaves the range of their values: the curve has no waves that
- * the points do not have. Two steps that make it so where a biarc would overshoot: arc, line, arc
- * for a steep rise between flat ends; and a profile that turns by 90 degrees or more at a point is
- * refused. At an end with r = 0 it is across the axis, at one with r > 0 the first arc is one of
- * the circle through the points next to it. Three points on a line give a line.
+ * the points do not have. For a steep rise between level ends, where a biarc would overshoot, there
+ * is arc, line, arc instead. A profile that turns past a direction along and one across the axis at
+ * one point is refused. At an end with r = 0 the tangent is across the axis, at one with r > 0 the
+ * first arc is of the circle through the points next to it. Three points on a line give a line.
  *
  * Beyond the sizes STATUS_INVALID for outlines that cross themselves, points that coincide (closer
  * than 1 um) ("/profile/3"), corners too near for their edges ("/rim"). */

@@ -10,10 +10,12 @@
  * 3. Smoothing: each triangle becomes a quadratic patch that is normal to the vertices' normals
  *    (Nagata 2005, in the use of Neto, Oliveira, Menezes 2017 for contact with rigid tools), so
  *    that distance, normal and curvature are those of a smooth body and not of facets, while the
- *    vertices stay where they are. The distance to the patches is exact, and its gradient the
- *    normal: a contact force with it has a potential. Rounding by an offset would move the surface,
- *    and leave no curvature within facets. Edges that turn by more than `crease` stay sharp; they
- *    are curves that fit both sides.
+ *    vertices stay where they are. The normal of a vertex is the mean over its triangles weighted
+ *    with their angles, in which facets far smaller than the largest have no say: flat sides do
+ *    not bulge next to the strips of a rounded rim. The distance to the patches is exact, and its
+ *    gradient the normal: a contact force with it has a potential. Rounding by an offset would
+ *    move the surface, and leave no curvature within facets. Edges that turn by more than `crease`
+ *    stay sharp; they are curves that fit both sides.
  * 4. Signed distance: a tree of boxes over the patches, sign by the normal at the nearest point,
  *    at edges and vertices by the angle-weighted mean (Baerentzen, Aanaes 2005). */
 #ifndef PNEULAB_RIGID_SURFACE_H
