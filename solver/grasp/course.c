@@ -14,6 +14,8 @@ enum {
 static const double cut_factor = 0.4, grow_factor = 1.6;
 /* Shortest step in equilibrium and length of what is tried in motion, in longest steps. */
 static const double shortest = 0.03, carried_step = 0.25;
+/* A leap that moves the body so many times as far as the steps before it is a jump. */
+static const double jump_factor = 3;
 
 /* What the body and the object go through in one stage. */
 struct stage {
@@ -33,6 +35,8 @@ struct course {
   double step;         /* part of the stage */
   double shift;        /* of the object along the pull when the release begins, m */
   double time;         /* s */
+  double pace;         /* of the nodes in the last step, rms, m for the whole stage */
+  bool leaps;          /* a step over a place without equilibrium is tried */
   int steps, jumps;    /* of the stage */
   double stages;       /* number of stages that have passed */
   double moving;       /* of these in motion */
@@ -107,6 +111,23 @@ static void record_energy(struct course *c, const struct fe_load *load) {
   energy_record(&c->f->energy, c->f->solve.model, &c->f->solve.state, load, &step);
 }
 
+/* Root mean square way of the nodes from the last state to the one that was tried, m. */
+static double way_of(const struct finger *f) {
+  const struct mesh *mesh = &f->solve.mesh;
+  double sum = 0;
+  for (int i = 0; i < 3 * mesh->node_count; i++) {
+    double d = f->trial.u[i] - f->solve.state.u[i];
+    sum += d * d;
+  }
+  return sqrt(sum / mesh->node_count);
+}
+
+/* Whether a state that was reached by a leap is that of a body that has jumped. */
+static bool has_jumped(const struct course *c, double target) {
+  double usual = fmax(c->pace, c->f->grasp.longest_step / c->stage.full);
+  return way_of(c->f) > jump_factor * usual * (target - c->along);
+}
+
 /* One step in equilibrium to `target`; on failure everything is as before. */
 static enum status rest_at(struct course *c, double target, int *iterations) {
   struct finger *f = c->f;
@@ -119,6 +140,9 @@ static enum status rest_at(struct course *c, double target, int *iterations) {
   if (status == STATUS_OK && f->solve.solver->negative_pivots > 0) {
     status = STATUS_UNSTABLE_PATH;
   }
+  if (status == STATUS_OK && c->leaps && has_jumped(c, target)) {
+    status = STATUS_UNSTABLE_PATH;
+  }
   if (f->solve.solver->verbose) {
     fprintf(stderr, "  %s %.5g: %s after %d factorisations\n", grasp_stage_word(c->stage.kind),
             target, status_word(status), *iterations);
@@ -128,6 +152,7 @@ static enum status rest_at(struct course *c, double target, int *iterations) {
     model_reject_obstacles(m);
     return status;
   }
+  c->pace = way_of(f) / (target - c->along);
   model_commit_obstacles(m, &f->trial);
   state_copy(m, &f->solve.state, &f->trial);
   record_energy(c, &load);
@@ -170,6 +195,7 @@ static enum status carry_to(struct course *c, double target) {
   options.drive = (struct dynamics_drive){.drive = drive, .context = &driven};
   options.driven = seconds;
   options.longest += seconds;
+  options.wall_s = 0; /* the time limit of the job holds */
   motion_clear(f->solve.model, &f->motion);
   f->motion.time = start;
   f->motion.step = 0;
@@ -220,6 +246,23 @@ static double next_target(const struct course *c, double goal) {
   return target > goal - 0.05 * c->step ? goal : target;
 }
 
+/* Where steps have become too short, tries long ones: the place at which Newton's method fails may
+ * be a narrow one. What the body would have to jump for is left to its motion. */
+static enum status leap(struct course *c, double goal) {
+  static const double lengths[] = {0.3, 0.8};
+  enum status status = STATUS_STEP_MINIMUM;
+  c->leaps = true;
+  for (size_t k = 0; k < sizeof lengths / sizeof *lengths && status != STATUS_OK; k++) {
+    int iterations = 0;
+    status = rest_at(c, fmin(goal, c->along + lengths[k] * c->stage.full), &iterations);
+    if (final(status)) {
+      break;
+    }
+  }
+  c->leaps = false;
+  return status;
+}
+
 /* Goes on to `goal`, a recorded place of the stage. *over: the stage ends before it. */
 static enum status reach(struct course *c, double goal, bool *over) {
   while (c->along < goal && !*over) {
@@ -237,12 +280,16 @@ static enum status reach(struct course *c, double goal, bool *over) {
       if (c->step >= shortest * c->stage.full) {
         continue;
       }
-      if (!c->f->grasp.dynamics || c->jumps >= JUMPS_MAX) {
+      c->step = carried_step * c->stage.full;
+      status = leap(c, goal);
+      if (final(status)) {
+        return status;
+      }
+      moves = status != STATUS_OK;
+      if (moves && (!c->f->grasp.dynamics || c->jumps >= JUMPS_MAX)) {
         return STATUS_STEP_MINIMUM;
       }
-      moves = true;
-      c->step = carried_step * c->stage.full;
-      status = carry_to(c, next_target(c, goal));
+      status = moves ? carry_to(c, next_target(c, goal)) : status;
     } else if (iterations <= EASY_ITERATIONS) {
       c->step = fmin(grow_factor * c->step, c->stage.full);
     }
@@ -263,6 +310,7 @@ static enum status follow_stage(struct course *c, const struct stage *stage) {
   c->along = 0;
   c->step = 0.5 * stage->full;
   c->steps = c->jumps = 0;
+  c->pace = 0;
   c->report->stage = stage->kind;
   enum status status = take(c, false);
   over = status == STATUS_OK && is_free(c);

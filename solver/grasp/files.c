@@ -1,21 +1,30 @@
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "solver/grasp/files.h"
+#include "solver/grasp/object_file.h"
+#include "solver/job/grasp_shape.h"
+#include "solver/mesh/actuator.h"
 #include "solver/post/contact_field.h"
 #include "solver/post/csv.h"
 #include "solver/post/fields.h"
 #include "solver/post/grasp_frames.h"
 #include "solver/post/output.h"
 #include "solver/post/skin.h"
+#include "solver/rigid/skin.h"
 
 enum { FRAMES_MAX = 60, FILE_NAME = 60 };
+
+/* How far the object's triangles may be from its surface, of the length of the body. */
+static const double flatness = 5e-4;
 
 struct grasp_files {
   const struct gripper *gripper;
   const char *directory;
   json_t *written; /* names of files */
   struct grasp_frames *frames;
+  struct object_file *object;
   /* Of the finger that is being solved. */
   int number;
   const struct finger *finger;
@@ -29,6 +38,29 @@ struct grasp_files {
   double time[FRAMES_MAX]; /* s */
 };
 
+/* The object's surface for the pages; of a plane as much as a finger can reach. */
+static enum status create_frames(struct grasp_files *files, struct error *error) {
+  const struct job_spec *spec = files->gripper->spec;
+  struct rigid_shape *shape = NULL;
+  struct rigid_skin skin = {.vertex_count = 0};
+  double extent = actuator_length(spec);
+  enum status status = grasp_shape_create(&spec->grasp->object.shape, &shape, error);
+  if (status == STATUS_OK) {
+    status = rigid_shape_skin(shape, flatness * extent, extent, &skin, error);
+  }
+  if (status == STATUS_OK) {
+    struct grasp_frames_object object = {skin.vertex_count, skin.vertex, skin.triangle_count,
+                                         skin.triangle};
+    status = grasp_frames_create(&object, &files->frames, error);
+  }
+  if (status == STATUS_OK) {
+    status = object_file_create(&skin, &files->object, error);
+  }
+  rigid_skin_release(&skin);
+  rigid_shape_destroy(shape);
+  return status;
+}
+
 enum status grasp_files_create(const struct gripper *gripper, const char *directory,
                                struct grasp_files **out, struct error *error) {
   struct grasp_files *files = calloc(1, sizeof *files);
@@ -41,8 +73,7 @@ enum status grasp_files_create(const struct gripper *gripper, const char *direct
   if (!files || !files->written) {
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the files of the run");
   }
-  struct grasp_frames_object object = {.point_count = 0};
-  return grasp_frames_create(&object, &files->frames, error);
+  return create_frames(files, error);
 }
 
 static void end_finger(struct grasp_files *files) {
@@ -58,6 +89,7 @@ void grasp_files_destroy(struct grasp_files *files) {
   if (files) {
     end_finger(files);
     grasp_frames_destroy(files->frames);
+    object_file_destroy(files->object);
     json_decref(files->written);
     free(files);
   }
@@ -130,6 +162,7 @@ static enum status evaluate_fields(struct grasp_files *files) {
     status = model_obstacle_fields(m, f->solve.state.u, files->touch, NULL);
   }
   for (int n = 0; n < files->finger->solve.mesh.node_count; n++) {
+    files->touch[n] = fmax(files->touch[n], 0); /* means over faces overshoot beside the contact */
     files->fields.contact[n] += files->touch[n];
   }
   return status;
@@ -162,11 +195,15 @@ static enum status write_list(struct grasp_files *files, const char *name, struc
   return status;
 }
 
+static const struct rigid_pose *object_pose(const struct grasp_files *files) {
+  return &files->finger->solve.model->obstacle[files->finger->obstacle]->pose;
+}
+
 /* Hands the state on to what the pages show. */
 static enum status add_frame(struct grasp_files *files, const struct grasp_sample *sample) {
   const struct finger *f = files->finger;
   struct grasp_frames_state state = {f->solve.state.u, files->touch, files->fields.stretch};
-  struct grasp_frames_pose pose = pose_of(&f->solve.model->obstacle[f->obstacle]->pose);
+  struct grasp_frames_pose pose = pose_of(object_pose(files));
   json_t *row = grasp_sample_object(sample);
   enum status status = row ? grasp_frames_add(files->frames, row, &pose, &state) : STATUS_NO_MEMORY;
   json_decref(row);
@@ -190,6 +227,10 @@ static enum status write_frame(struct grasp_files *files, const struct grasp_sam
   snprintf(name, FILE_NAME, "%ssurface-%04d.vtu", prefix, files->count);
   snprintf(list, sizeof list, "%ssurface.pvd", prefix);
   status = write_surface(files, name, error);
+  if (status == STATUS_OK && files->number == 0) {
+    status = object_file_write(files->object, files->directory, object_pose(files), files->written,
+                               sample->value[GRASP_TIME], error);
+  }
   if (status == STATUS_OK) {
     if (files->count == 0) {
       json_array_append_new(files->written, json_string(list));

@@ -94,7 +94,8 @@ static void set_pull(const struct gripper *g, json_t *metrics) {
       peak = v[GRASP_HOLD];
       peak_at = v[GRASP_SHIFT];
     }
-    slip = isnan(slip) && v[GRASP_SLIP] > slipping ? v[GRASP_SHIFT] : slip;
+    bool slips = v[GRASP_SLIP] > slipping && v[GRASP_SHIFT] > 0;
+    slip = isnan(slip) && slips ? v[GRASP_SHIFT] : slip;
     if (last && (last->value[GRASP_AREA] > 0 || v[GRASP_AREA] > 0)) {
       double step = v[GRASP_SHIFT] - last->value[GRASP_SHIFT];
       work += 0.5 * step * (v[GRASP_HOLD] + last->value[GRASP_HOLD]);

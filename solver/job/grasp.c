@@ -94,6 +94,16 @@ static bool same_box(const double size[3], const double a[3][3], const double b[
   return true;
 }
 
+/* Whether the profile is its own mirror image about z = 0. */
+static bool is_even(const struct grasp_shape *shape) {
+  bool even = true;
+  for (int k = 0; k < shape->profile_count; k++) {
+    const double *a = shape->profile[k], *b = shape->profile[shape->profile_count - 1 - k];
+    even = even && fabs(a[0] + b[0]) <= same_place && fabs(a[1] - b[1]) <= same_place;
+  }
+  return even;
+}
+
 /* Whether one shape is the same in both poses. That of b may mirror: its rotation then has the
  * determinant -1. */
 static bool same_pose(const struct grasp_object *a, const struct grasp_object *b) {
@@ -112,8 +122,9 @@ static bool same_pose(const struct grasp_object *a, const struct grasp_object *b
   case GRASP_CYLINDER:
     return placed && (along || near(axis_a, back, same_direction));
   case GRASP_FRUSTUM:
-  case GRASP_REVOLUTION:
     return placed && along;
+  case GRASP_REVOLUTION:
+    return placed && (along || (is_even(&a->shape) && near(axis_a, back, same_direction)));
   case GRASP_BOX:
     return placed && same_box(a->shape.size, a->rotation, b->rotation);
   case GRASP_PLANE:
@@ -142,6 +153,5 @@ bool grasp_symmetric(const struct grasp_spec *spec) {
   }
   return fabs(spec->approach.from[1]) <= same_place &&
          fabs(spec->pull.direction[1]) <= same_direction &&
-         fabs(spec->gravity[1]) <= same_direction && !mirrored.free &&
-         same_pose(&spec->object, &mirrored);
+         fabs(spec->gravity[1]) <= same_direction && same_pose(&spec->object, &mirrored);
 }

@@ -47,8 +47,6 @@ struct grasp_object {
   double place[3];       /* of its frame, m */
   double rotation[3][3]; /* from its frame: columns are its axes */
   double friction;       /* Coulomb's coefficient */
-  bool free;             /* moves under its weight and the forces of contact */
-  double mass;           /* kg, of a free one */
 };
 
 struct grasp_approach {

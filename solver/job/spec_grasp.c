@@ -139,8 +139,6 @@ static enum status read_object(const struct reader *reader, const json_t *value,
   const json_t *rotation = json_object_get(value, "rotation");
   read_vector(reader, json_object_get(value, "position"), object->place);
   object->friction = json_number_value(json_object_get(value, "friction"));
-  object->free = has_word(value, "motion", "free");
-  object->mass = reader_member(reader, value, "mass", "g", 0.0);
   memcpy(object->rotation, unturned, sizeof unturned);
   enum status status = read_direction(reader, json_object_get(value, "axis"), "/object/axis",
                                       "the axis of the object", axis);
@@ -155,10 +153,6 @@ static enum status read_object(const struct reader *reader, const json_t *value,
       return status;
     }
     rotate(object->rotation, axis, reader_member(reader, rotation, "angle", "deg", 0.0));
-  }
-  if (object->free && object->mass == 0) {
-    return error_set(reader->error, STATUS_INVALID, "/object/mass",
-                     "a free object has no mass here\na mass\n{\"mass\": \"50 g\"}");
   }
   return read_shape(reader, json_object_get(value, "shape"), &object->shape);
 }

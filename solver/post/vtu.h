@@ -10,13 +10,14 @@
 #include <stdio.h>
 #include "solver/base/error.h"
 
-enum { VTU_QUAD9 = 28, VTU_HEX27 = 29 }; /* cell types: biquadratic quad, triquadratic hexahedron */
+/* Cell types: triangle, biquadratic quadrilateral, triquadratic hexahedron. */
+enum { VTU_TRIANGLE = 5, VTU_QUAD9 = 28, VTU_HEX27 = 29 };
 
 struct vtu_grid {
   int point_count, cell_count;
   const float *point;          /* point_count x 3 */
   int cell_nodes;              /* nodes of a cell */
-  int cell_type;               /* VTU_QUAD9 or VTU_HEX27 */
+  int cell_type;               /* VTU_TRIANGLE, VTU_QUAD9 or VTU_HEX27 */
   const int32_t *connectivity; /* cell_count x cell_nodes, in VTK's order of the cell's nodes */
 };
 

@@ -108,8 +108,7 @@ static const struct variant variants[] = {
      {{"/object/rotation", "{\"axis\": [0, 0, 0], \"angle\": \"5 deg\"}"}},
      "/object/rotation/axis",
      "has no length"},
-    {grasp, {{"/object/motion", "\"free\""}}, "/object/mass", "no mass"},
-    {grasp, {{"/object/motion", "\"free\""}, {"/object/mass", "\"50 g\""}}, NULL, NULL},
+    {grasp, {{"/object/motion", "\"free\""}}, "/object/motion", "not known here"},
     /* courses */
     {grasp, {{"/grasp/pull/direction", "[0, 0, 0]"}}, "/grasp/pull/direction", "has no length"},
     {grasp, {{"/grasp/pull/distance", "\"0 mm\""}}, "/grasp/pull/distance", ""},
