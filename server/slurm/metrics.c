@@ -31,8 +31,9 @@ void slurm_metrics(void *engine, FILE *out) {
          (double)figures.poll_failures);
   number(out, "pneulab_cluster_poll_seconds_total", "counter", "Time that they took.",
          figures.poll_s);
-  meter_head(out, "pneulab_cluster_cpu_seconds_total", "counter",
-             "Processor time for the cluster: its programs, and looks at files where nothing is new.");
+  meter_head(
+      out, "pneulab_cluster_cpu_seconds_total", "counter",
+      "Processor time for the cluster: its programs, and looks at files where nothing is new.");
   fprintf(out, "pneulab_cluster_cpu_seconds_total{for=\"commands\"} %.6f\n", figures.command_cpu_s);
   fprintf(out, "pneulab_cluster_cpu_seconds_total{for=\"files\"} %.6f\n", figures.look_cpu_s);
 }

@@ -64,6 +64,7 @@ static void take_task(struct news *news, struct slurm_task *task, const struct s
   const char *reason = line->state == SLURM_PENDING ? line->reason : "";
   task->seen = true;
   task->absent_ms = 0;
+  task->requeued = task->phase == TASK_RUNS && line->state == SLURM_PENDING;
   if (task->phase == TASK_OVER ||
       (task->state == line->state && strncmp(task->reason, reason, sizeof task->reason - 1) == 0 &&
        (task->node[0] || !line->node[0]))) {
@@ -163,6 +164,25 @@ static void lose(struct slurm_task *task, const char *lines) {
   task_lost(task, state, node[0] ? node : task->node);
 }
 
+/* A task that has begun and is pending again: its node was lost, and the cluster wants to start it
+ * once more although it was told not to. It would find its mark and end. */
+static void take_away(struct slurm_task *task) {
+  char name[48];
+  const char *const names[] = {name};
+  struct error error;
+  snprintf(name, sizeof name, "%lld_%u", (long long)task->batch->cluster_job, task->index);
+  if (slurm_cancel(&task->batch->slurm->client, names, 1, false, &error) != STATUS_OK) {
+    slurm_note_answer(task->batch->slurm, &error);
+    return; /* the next poll sees it again */
+  }
+  batch_look_end(task);
+  if (task->phase != TASK_OVER) {
+    log_event(LOG_LEVEL_WARNING, "task started anew", LOG_TEXT("batch", task->batch->name),
+              LOG_NUMBER("task", task->index));
+    task_lost(task, SLURM_NODE_LOST, task->node);
+  }
+}
+
 /* Looks for tasks of a batch that are gone; asks the cluster once what became of them. */
 static void look_for_lost(struct slurm_batch *batch, int64_t now) {
   struct slurm *slurm = batch->slurm;
@@ -170,6 +190,9 @@ static void look_for_lost(struct slurm_batch *batch, int64_t now) {
   struct error error;
   bool asked = false;
   for (size_t i = 0; i < batch->count; i++) {
+    if (batch->task[i].requeued && batch->task[i].phase == TASK_RUNS) {
+      take_away(&batch->task[i]);
+    }
     if (!gone(&batch->task[i], now)) {
       continue;
     }

@@ -60,6 +60,7 @@ struct slurm_task {
   char reason[CLUSTER_WORD_SIZE];
   char node[CLUSTER_WORD_SIZE];
   bool seen;             /* by the last poll */
+  bool requeued;         /* the cluster means to start it a second time */
   int64_t absent_ms;     /* since when polls do not see it; 0: they do */
   enum stop_cause cause; /* why we want it to end as a whole */
   int stopped;           /* the member for whose sake */
