@@ -104,8 +104,10 @@ static void look(struct slurm *slurm) {
     any = batch_look(batch, progress) || any;
     if (batch->open == 0) {
       batch_drop(batch);
+      any = true;
     }
   }
+  any = any || slurm->ends > 0;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &after);
   ends_flush(slurm);
   double took_s =

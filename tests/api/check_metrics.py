@@ -8,7 +8,7 @@ SAMPLE = re.compile(r'^([a-zA-Z_:][a-zA-Z0-9_:]*)(?:\{(.*)\})? (\S+)$')
 LABEL = re.compile(r'([a-zA-Z_][a-zA-Z0-9_]*)="((?:[^"\\]|\\.)*)"(?:,|$)')
 # What a name that measures something ends in (before _total), and names that count things.
 UNITS = ("_seconds", "_bytes", "_info", "_fds", "_jobs", "_workers", "_busy", "_connections",
-         "_subscribers", "_isolation")
+         "_subscribers", "_isolation", "_tasks", "_reachable")
 
 
 def labels_of(text):
