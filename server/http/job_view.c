@@ -38,18 +38,11 @@ static void progress_set(const struct service *service, const struct job_record 
   json_object_set_new(view, "progress_detail", reported ? progress_json(&progress) : json_null());
 }
 
-/* Adds "cluster", where a job that has not ended is, or why it waits, if there is something to
- * tell. */
-static void cluster_set(const struct service *service, const struct job_record *record,
-                        json_t *view) {
+json_t *job_place(const struct service *service, const struct job_record *record) {
   bool waits = record->state == JOB_STATE_QUEUED || record->state == JOB_STATE_RETRY_WAIT;
-  bool none = job_state_terminal(record->state) || record->state == JOB_STATE_HELD;
-  json_t *place = none || strcmp(record->kind, "study") == 0
-                      ? NULL
-                      : executor_place(service->executor, record->id, record->engine, waits);
-  if (place) {
-    json_object_set_new(view, "cluster", place);
-  }
+  bool none = job_state_terminal(record->state) || record->state == JOB_STATE_HELD ||
+              strcmp(record->kind, "study") == 0;
+  return none ? NULL : executor_place(service->executor, record->id, record->engine, waits);
 }
 
 static void link_set(json_t *links, const char *name, int64_t id, const char *rest) {
@@ -147,7 +140,10 @@ json_t *job_view(const struct service *service, const struct job_record *record,
                 time_view(record->started_ms), "finished", time_view(record->finished_ms));
   if (view) {
     progress_set(service, record, view);
-    cluster_set(service, record, view);
+    json_t *place = job_place(service, record);
+    if (place) {
+      json_object_set_new(view, "cluster", place);
+    }
   }
   if (view && record->retry_of != 0) {
     json_object_set_new(view, "retry_of", json_integer(record->retry_of));

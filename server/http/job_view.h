@@ -19,4 +19,8 @@ void job_view_reply(struct request *request, struct reply *reply, unsigned statu
 void job_view_reply_waiting(struct request *request, struct reply *reply, unsigned status,
                             int64_t id, bool location);
 
+/* Where a job is on the cluster that solves it, or why it waits: the member "cluster" of its view.
+ * A new reference; NULL when there is nothing to tell. */
+json_t *job_place(const struct service *service, const struct job_record *record);
+
 #endif

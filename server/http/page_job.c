@@ -95,12 +95,33 @@ static double last_pressure(const struct job_page *page) {
   return count > 0 && json_is_number(value) ? json_number_value(value) : NAN;
 }
 
+/* Where a job is on the cluster that solves it, or why it is not there. */
+static void cluster_write(struct html *html, const struct job_page *page) {
+  json_t *place = job_place(page->request->service, &page->record);
+  const json_t *job = json_object_get(place, "job"), *task = json_object_get(place, "task");
+  const char *node = json_string_value(json_object_get(place, "node"));
+  const char *message = json_string_value(json_object_get(place, "message"));
+  if (place) {
+    html_open(html, "p", "class", "muted", "id", "cluster", NULL);
+    html_text(html, "Cluster: ");
+    if (json_is_integer(job)) {
+      html_format(html, "%lld_%lld, ", (long long)json_integer_value(job),
+                  (long long)json_integer_value(task));
+    }
+    html_format(html, "%s%s%s. %s", json_string_value(json_object_get(place, "state")),
+                node && node[0] ? " on " : "", node ? node : "", message ? message : "");
+    html_close(html);
+  }
+  json_decref(place);
+}
+
 static void reason_write(struct html *html, void *context) {
   const struct job_page *page = context;
   const struct job_record *job = &page->record;
   const char *advice = page_advice(job->reason_code);
   char text[PAGE_TEXT];
   html_open(html, "div", "id", "reason", "data-live", "", NULL);
+  cluster_write(html, page);
   if (job->state != JOB_STATE_SUCCEEDED && (job->reason_code[0] || job->message[0])) {
     html_open(html, "div", "class", "notice", NULL);
     html_open(html, "p", NULL);
