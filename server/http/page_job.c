@@ -108,8 +108,9 @@ static void cluster_write(struct html *html, const struct job_page *page) {
       html_format(html, "%lld_%lld, ", (long long)json_integer_value(job),
                   (long long)json_integer_value(task));
     }
-    html_format(html, "%s%s%s. %s", json_string_value(json_object_get(place, "state")),
-                node && node[0] ? " on " : "", node ? node : "", message ? message : "");
+    html_format(html, "%s%s%s.%s%s", json_string_value(json_object_get(place, "state")),
+                node && node[0] ? " on " : "", node ? node : "", message && message[0] ? " " : "",
+                message ? message : "");
     html_close(html);
   }
   json_decref(place);
