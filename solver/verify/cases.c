@@ -469,6 +469,22 @@ static const struct verify_case cases[] = {
      .bound_because =
          "the works are means over steps: error of the second order in a step of 1/16 of a way",
      .run = case_friction_energy},
+    {.name = "cantilever-vibration",
+     .title = "First bending vibration of a cantilever, in time",
+     .quantity = "frequency, by the crossings of zero over two periods",
+     .unit = "Hz",
+     .author = "S. P. Timoshenko",
+     .year = 1921,
+     .source = "On the correction for shear of the differential equation for transverse "
+               "vibrations; shear coefficient of Cowper (1966)",
+     .size = ELEMENT_SIZE,
+     .point = "time_over_period",
+     .x_label = "Time over the period",
+     .y_label = "Displacement of the tip over its amplitude",
+     .bound = 0.01,
+     .bound_because = "curvature constant in each of four elements, (1/4)^2 / 12 = 0.5 % of the "
+                      "energy; steps of a fortieth of a period, (2 pi / 40)^2 / 24 = 0.1 %",
+     .run = case_vibration},
 };
 
 const struct verify_case *verify_cases(int *count) {

@@ -14,6 +14,6 @@ verify_case_run case_cook_sheet, case_cook_plane_strain, case_cook_incompressibl
     case_roll_up, case_elastica, case_contact_patch, case_crushed_cylinder, case_hertz,
     case_treloar_uniaxial, case_treloar_equibiaxial, case_arch, case_arch_by_arc_length,
     case_sphere_of_revolution, case_washer, case_hertz_sphere, case_friction_block, case_capstan,
-    case_friction_energy;
+    case_friction_energy, case_vibration;
 
 #endif
