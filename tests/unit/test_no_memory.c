@@ -92,6 +92,19 @@ static const struct {
     {"missing key", "{\"kind\": \"response\", \"actuator\": " ACTUATOR "}", STATUS_INVALID},
     {"wrong unit", "{\"kind\": \"verify\", \"case\": \"elastica\", \"timeout\": \"5 mm\"}",
      STATUS_INVALID},
+    {"surface",
+     "{\"kind\": \"grasp\", \"actuator\": " ACTUATOR ", \"material\": \"dragon-skin-20\", \"load\":"
+     " {\"pressure\": {\"to\": \"30 kPa\"}}, \"object\": {\"shape\": {\"form\": \"surface\", "
+     "\"stl\":"
+     " {\"base64\": \""
+     "AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA"
+     "AAAAAAAAAAAAAAAAAAAAAAAEAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAIEEAAAAAAAAgQQAA"
+     "AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAACBBAAAAAAAAAAAAAAAAAAAAAAAAIEEAAAAAAAAA"
+     "AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAgQQAAAAAAACBBAAAAAAAAAAAAAAAAAAAAAAAAAAAgQQAA"
+     "AAAAAAAAAAAAAAAAIEEAAAAAAAAAAAAAAAAAACBBAAA="
+     "\"}}, \"position\": [\"45 mm\", 0, \"-30 mm\"], \"friction\": 0.5}, \"grasp\": {\"pull\":"
+     " {\"direction\": [1, 0, 0], \"distance\": \"10 mm\"}}}",
+     STATUS_OK},
     {"impossible body",
      "{\"kind\": \"response\", \"actuator\": {\"family\": \"pneunet\", \"length\": \"60 mm\","
      " \"width\": \"3 mm\", \"height\": \"15 mm\", \"chambers\": [{\"config\": \"B\", \"count\":"
@@ -142,15 +155,21 @@ static void write_in_directory(const char *name, const char *text, char *path, s
   }
 }
 
-/* A study whose base is a file, which names a table, with a sign that is no UTF-8. */
+/* A study whose base is a file, which names a table, with a sign that is no UTF-8, and a surface.
+ */
 static long embed_all(void) {
   static const char study[] = "{\"kind\": \"study\", \"base\": {\"file\": \"base.json\"}}";
   char path[100];
   long place = 1;
   write_in_directory("curve.csv", "e,\xB0\n0,0\n1,1\n", path, sizeof path);
+  write_in_directory("part.stl",
+                     "solid\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                     "vertex 0 1 0\nendloop\nendfacet\nendsolid\n",
+                     path, sizeof path);
   write_in_directory("base.json",
-                     "{\"kind\": \"fit-material\", \"data\": {\"file\": \"curve.csv\"}}", path,
-                     sizeof path);
+                     "{\"kind\": \"fit-material\", \"data\": {\"file\": \"curve.csv\"},"
+                     " \"object\": {\"shape\": {\"stl\": {\"file\": \"part.stl\"}}}}",
+                     path, sizeof path);
   for (bool failed = true; failed; place++) {
     char *embedded = NULL;
     size_t length = 0;
