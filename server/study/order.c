@@ -52,6 +52,26 @@ static void find_counts(struct columns *columns, const double *value, size_t mem
   }
 }
 
+/* order[]: the members chain by chain. */
+static enum status list_members(const struct chain_place *place, size_t members, size_t *order,
+                                struct error *error) {
+  size_t *start = calloc(members + 2, sizeof *start);
+  if (!start) {
+    return error_set(error, STATUS_NO_MEMORY, NULL, "No memory for the order of a study.");
+  }
+  for (size_t m = 0; m < members; m++) {
+    start[place[m].chain + 1]++;
+  }
+  for (size_t c = 0; c < members; c++) {
+    start[c + 1] += start[c];
+  }
+  for (size_t m = 0; m < members; m++) {
+    order[start[place[m].chain] + place[m].position] = m;
+  }
+  free(start);
+  return STATUS_OK;
+}
+
 enum status order_members(struct columns *columns, const struct study *study,
                           struct chain_place **place, size_t **order, struct error *error) {
   size_t members = study->count, count = columns_count(columns);
@@ -74,10 +94,8 @@ enum status order_members(struct columns *columns, const struct study *study,
     status =
         chain_order(value, dimension, members, study->light ? 0 : count, length, *place, error);
   }
-  size_t chains = length > 0 ? (members + length - 1) / length : 0;
-  for (size_t m = 0; m < members && status == STATUS_OK; m++) { /* as chain_order cuts them */
-    size_t chain = (*place)[m].chain;
-    (*order)[members * chain / chains + (*place)[m].position] = m;
+  if (status == STATUS_OK) {
+    status = list_members(*place, members, *order, error);
   }
   free(value);
   free(dimension);

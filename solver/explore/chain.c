@@ -3,6 +3,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Part by which a walk has to get shorter to be another one: less is rounding. */
+static const double least_gain = 1e-9;
+
 size_t chain_length(size_t members, bool light) {
   enum { LEAST_CHAINS = 8 };
   size_t share = members / LEAST_CHAINS;
@@ -47,12 +50,9 @@ static double apart(const double *a, const double *b, const struct chain_dimensi
   return sum;
 }
 
-/* walk[members]: the designs in the order in which they are visited. */
+/* walk[members]: all designs, put into the order in which they are visited. */
 static void greedy(const double *point, const struct chain_dimension *dimension, size_t members,
                    size_t dimensions, size_t *walk) {
-  for (size_t m = 0; m < members; m++) {
-    walk[m] = m;
-  }
   for (size_t k = 1; k < members; k++) {
     const double *here = &point[walk[k - 1] * dimensions];
     size_t best = k;
@@ -70,25 +70,92 @@ static void greedy(const double *point, const struct chain_dimension *dimension,
   }
 }
 
+/* The distances between designs, and the order in which they are visited. */
+struct tour {
+  const double *point;
+  const struct chain_dimension *dimension;
+  size_t members, dimensions;
+  size_t *walk;
+};
+
+/* Between the designs at two places of the walk. */
+static double leg(const struct tour *tour, size_t i, size_t j) {
+  return sqrt(apart(&tour->point[tour->walk[i] * tour->dimensions],
+                    &tour->point[tour->walk[j] * tour->dimensions], tour->dimension,
+                    tour->dimensions));
+}
+
+static void reverse(size_t *walk, size_t from, size_t to) {
+  for (; from < to; from++, to--) {
+    size_t kept = walk[from];
+    walk[from] = walk[to];
+    walk[to] = kept;
+  }
+}
+
+/* Turns stretches of the walk round while that shortens it: the greedy walk saves the longest legs
+ * for its end. */
+static void shorten(const struct tour *tour) {
+  enum { PASSES = 30 };
+  size_t last = tour->members - 1;
+  bool shorter = tour->members > 2;
+  for (int pass = 0; pass < PASSES && shorter; pass++) {
+    shorter = false;
+    for (size_t i = 0; i < last; i++) {
+      for (size_t j = i + 2; j <= last; j++) {
+        double now = leg(tour, i, i + 1) + (j < last ? leg(tour, j, j + 1) : 0);
+        double then = leg(tour, i, j) + (j < last ? leg(tour, i + 1, j + 1) : 0);
+        if (then < now * (1 - least_gain)) {
+          reverse(tour->walk, i + 1, j);
+          shorter = true;
+        }
+      }
+    }
+  }
+}
+
+/* Where the chain that begins at `from` ends: after the longest leg of its second half, of equals
+ * the last. */
+static size_t cut(const struct tour *tour, size_t from, size_t length) {
+  size_t to = from + length, best = to;
+  double longest = -1;
+  if (to >= tour->members) {
+    return tour->members;
+  }
+  for (size_t end = from + (length + 1) / 2; end <= to; end++) {
+    double jump = leg(tour, end - 1, end);
+    if (jump >= longest) {
+      longest = jump;
+      best = end;
+    }
+  }
+  return best;
+}
+
 enum status chain_order(const double *value, const struct chain_dimension *dimension,
                         size_t members, size_t dimensions, size_t length, struct chain_place *place,
                         struct error *error) {
   double *point = malloc(sizeof *point * (members * dimensions + 1));
   size_t *walk = malloc(sizeof *walk * (members + 1));
+  struct tour tour = {point, dimension, members, dimensions, walk};
   enum status status = STATUS_OK;
   if (!point || !walk) {
     status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory to order %zu designs", members);
     goto done;
   }
   normalise(value, dimension, members, dimensions, point);
-  greedy(point, dimension, members, dimensions, walk);
-  size_t chains = (members + length - 1) / length;
-  for (size_t c = 0, from = 0; c < chains; c++) {
-    size_t to = members * (c + 1) / chains;
+  for (size_t m = 0; m < members; m++) {
+    walk[m] = m;
+  }
+  if (dimensions > 0) {
+    greedy(point, dimension, members, dimensions, walk);
+    shorten(&tour);
+  }
+  for (size_t from = 0, c = 0, to; from < members; from = to, c++) {
+    to = cut(&tour, from, length);
     for (size_t k = from; k < to; k++) {
       place[walk[k]] = (struct chain_place){c, k - from};
     }
-    from = to;
   }
 done:
   free(point);

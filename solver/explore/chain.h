@@ -9,7 +9,7 @@
 
 enum {
   CHAIN_LENGTH_MAX = 64,  /* members of a chain, light ones */
-  CHAIN_LENGTH_HEAVY = 16 /* others: the first of a chain has nothing to start from */
+  CHAIN_LENGTH_HEAVY = 32 /* others: the first of a chain has nothing to start from */
 };
 
 /* Where a member stands. */
@@ -30,10 +30,12 @@ size_t chain_length(size_t members, bool light);
 
 /* Gives each design its place. value[members x dimensions], NAN where a design has none; every
  * dimension is scaled to 0 .. 1 by its extremes. The order is the greedy walk (Rosenkrantz, Stearns
- * and Lewis 1977) from the first design to the nearest one not yet visited, of equals the first; it
- * is cut into chains of at most `length` whose lengths differ by one at most. Without dimensions it
+ * and Lewis 1977) from the first design to the nearest one not yet visited, of equals the first;
+ * then stretches of it are turned round while that makes it shorter (Croes 1958). It is cut into
+ * chains of at most `length`, each after the longest leg of its second half. Without dimensions it
  * is the order of the members. The same values give the same chains, whatever the machine does
- * meanwhile; takes members^2 x dimensions operations. STATUS_OK or STATUS_NO_MEMORY. */
+ * meanwhile; takes some ten times members^2 x dimensions operations. STATUS_OK or STATUS_NO_MEMORY.
+ */
 enum status chain_order(const double *value, const struct chain_dimension *dimension,
                         size_t members, size_t dimensions, size_t length, struct chain_place *place,
                         struct error *error);
