@@ -6,13 +6,15 @@
  * diverges): the search steps back from it.
  *
  * Methods:
- *   GAUSS_NEWTON  residuals without limits: least squares of the linearised residuals within a box
- *                 about the best point, the bounds and the side conditions, by NLopt's SLSQP; the
- *                 box grows and shrinks with the quality of the prediction (Fletcher 1987,
- * Practical Methods of Optimization, section 5.5; Nocedal and Wright 2006, algorithm 4.1) SLSQP
- * Kraft (1994), with derivatives MMA           globally convergent method of moving asymptotes
- * (Svanberg 2002), with derivatives COBYLA        Powell (1994), without derivatives All are
- * deterministic: equal answers lead to equal questions. */
+ * - GAUSS_NEWTON, residuals without limits: least squares of the linearised residuals within a box
+ *   about the best point, the bounds and the side conditions, by NLopt's SLSQP; the box grows and
+ *   shrinks with the quality of the prediction (Fletcher 1987, Practical Methods of Optimization,
+ *   section 5.5; Nocedal and Wright 2006, algorithm 4.1);
+ * - SLSQP, Kraft (1994), with derivatives;
+ * - MMA, the globally convergent method of moving asymptotes, Svanberg (2002), with derivatives;
+ * - COBYLA, Powell (1994), without derivatives.
+ *
+ * All are deterministic: equal answers lead to equal questions. */
 #ifndef PNEULAB_EXPLORE_OPTIMISE_H
 #define PNEULAB_EXPLORE_OPTIMISE_H
 

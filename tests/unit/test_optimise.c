@@ -326,10 +326,11 @@ static bool absent(const double *p) {
   return p[1] > 1.5 || hypot(p[0] - 0.2, p[1] - 0.9) < 0.4;
 }
 
-/* COBYLA creeps along this valley: in as many evaluations it comes to 6e-4 with nothing in its
- * way. */
+/* COBYLA's linear models creep along this curved valley: called directly, with nothing in its way,
+ * NLopt comes to 0.8 to 1.6e-3 in 3000 evaluations, depending on the first step (0.05 to 0.4 of the
+ * range). With the hole it must come as far. */
 START_TEST(searches_go_round_designs_that_fail) {
-  static const double it_must_reach[] = {1e-12, 1e-12, 1e-4, 1e-2};
+  static const double it_must_reach[] = {1e-12, 1e-12, 1e-4, 2e-3};
   static const enum optimise_method methods[] = {OPTIMISE_GAUSS_NEWTON, OPTIMISE_SLSQP,
                                                  OPTIMISE_MMA, OPTIMISE_COBYLA};
   struct model *model = malloc(sizeof *model);

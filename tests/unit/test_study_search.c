@@ -226,8 +226,11 @@ START_TEST(repetition_leads_to_the_same_members) {
 }
 END_TEST
 
-/* Bodies with walls below 1.5 mm fail. The largest angle, 21.8 deg, lies on that edge, of which
- * nothing is known before a step across it: the search has to come near, from 7.1 deg. */
+/* Bodies with walls below 1.5 mm fail. The largest angle, 21.8 deg at s = 1.5 and t = 1, lies on
+ * that edge, of which nothing is known before a step across it: the search has to come near,
+ * from 7.1 deg. More than near it cannot come by the method: every step follows the gradient, which
+ * points across the edge, and is halved until it ends before it. So s is within 1e-3 of the edge at
+ * the sixth design, but t stays near 1.79: 87 % of the largest angle after 30 designs. */
 static json_t *make_some(const json_t *document, size_t member) {
   return value_of(document, 0, member) < 1.5 ? NULL : make_body(document, member);
 }
