@@ -12,6 +12,9 @@
 
 enum { PAGE_ROWS = 100, METRICS_SHOWN = 12, ADDRESS = 600 };
 
+/* A longer name of a member, which repeats its parameters, is a number in the table. */
+enum { NAME_MOST = 40 };
+
 struct study_page {
   const struct request *request;
   const struct study_table *table;
@@ -144,12 +147,14 @@ static void cell_write(struct html *html, const struct study_column *column, dou
 
 static void row_write(struct html *html, const struct study_page *page, size_t row) {
   const struct study_table *table = page->table;
-  char href[PAGE_TEXT], word[PAGE_TEXT];
+  char href[PAGE_TEXT], word[PAGE_TEXT], label[32];
   snprintf(href, sizeof href, "/jobs/%lld", (long long)table->job_id[row]);
   html_open(html, "tr", "data-member", href + 6, NULL);
   html_open(html, "td", NULL);
-  html_leaf(html, "a", table->member_name[row][0] ? table->member_name[row] : href + 1, "href",
-            href, NULL);
+  const char *name = table->member_name[row];
+  bool plain = name[0] && (strlen(name) <= NAME_MOST || table->parameters == 0);
+  snprintf(label, sizeof label, "design %d", table->member[row]);
+  html_leaf(html, "a", plain ? name : label, "href", href, "title", name[0] ? name : NULL, NULL);
   html_close(html);
   html_open(html, "td", NULL);
   page_state(html, (enum job_state)table->state[row], NULL);

@@ -15,6 +15,8 @@ export const STATES = [
   'cancelled',
 ];
 
+const LABEL_MOST = 40; // characters of a name that a table has room for
+
 function extent(data) {
   let low = Infinity;
   let high = -Infinity;
@@ -130,5 +132,11 @@ export class Designs {
 
   name(row) {
     return this.names[row] || `design ${this.members[row]}`;
+  }
+
+  // Its name where there is little room: one that only repeats the parameters is a number.
+  label(row) {
+    const name = this.name(row);
+    return name.length <= LABEL_MOST || this.parameters.length === 0 ? name : `design ${this.members[row]}`;
   }
 }

@@ -187,7 +187,7 @@ export class Explorer {
     tip.hidden = row < 0 || !event;
     if (!tip.hidden) {
       tip.replaceChildren(
-        make('strong', {}, this.designs.name(row)),
+        make('strong', {}, this.designs.label(row)),
         ...this.parallel.columns
           .slice(0, 10)
           .map((column) => make('span', {}, `${column.title} `, make('b', {}, column.textWithUnit(column.data[row])))),

@@ -6,7 +6,8 @@
 //   comparison = name ("<" | "<=" | ">" | ">=" | "=" | "!=") (number | word | "text")
 //
 // A name is the key of a column or its title, whole or the part that only one column has; it may be
-// quoted. "state" and "name" are of the design itself; = of a text holds for a part of the name.
+// quoted. "state", "reason" (of a failure) and "name" are of the design itself; = of a text holds for a part of
+// the name.
 
 const TOKEN = /\s*(?:([<>]=?|!=|==?)|([()])|"([^"]*)"|([^\s()<>=!"]+))/y;
 const COMPARE = {
@@ -74,9 +75,12 @@ function comparison(designs, name, operator, value) {
   if (name === 'state') {
     return (row) => compare(designs.state(row), value);
   }
+  if (name === 'reason') {
+    return (row) => compare(designs.reasons[row] ?? '', value);
+  }
   if (name === 'name') {
     const isEqual = operator === '=';
-    return (row) => designs.name(row).includes(value) === isEqual;
+    return (row) => (designs.name(row).includes(value) || designs.label(row) === value) === isEqual;
   }
   const column = columnNamed(designs, name);
   const { data } = column;

@@ -1,6 +1,6 @@
 // The page of a study. What is seen — metric, axes, ranges, sort, slices — is in the address.
 
-import { jobUrl, request } from '../api.js';
+import { isActive, jobUrl, request } from '../api.js';
 import { find, make, setText } from '../dom.js';
 import { byImportance, number } from '../format.js';
 import { showProblem } from '../problem.js';
@@ -28,7 +28,7 @@ let panels = []; // that ask the daemon
 let parts = []; // that know the designs
 let metric = '';
 let study = null;
-let wanted = {}; // objective and ranking, as the study's document has them
+let wanted = {}; // objective and ranking, as the study's document has them, and the history of its result
 
 // Metrics that say how well a solve went are of less interest than what it found.
 function metricsByInterest() {
@@ -57,7 +57,7 @@ function showTiles() {
   ]) {
     setText(find(`${name}-value`), row < 0 ? '–' : column.textWithUnit(column.data[row]));
     find(`${name}-design`).replaceChildren(
-      row < 0 ? '\u00a0' : make('a', { href: `/jobs/${designs.jobs[row]}` }, designs.name(row)),
+      row < 0 ? '\u00a0' : make('a', { href: `/jobs/${designs.jobs[row]}`, title: designs.name(row) }, designs.label(row)),
     );
   }
 }
@@ -89,7 +89,7 @@ function showHistory() {
   const isOptimisation = study.sampling === 'optimise';
   find('history').hidden = !isOptimisation || !column;
   if (isOptimisation && column) {
-    history.show(designs, column, wanted.objective?.maximise !== undefined);
+    history.show(designs, column, wanted);
   }
 }
 
@@ -209,6 +209,25 @@ async function takeDesigns(isOver) {
     explorer?.retire();
     setUp();
   }
+  if (isOver && wanted.objective) {
+    readHistory().catch(() => {}); // the course of the metric is shown meanwhile
+  }
+}
+
+// Filters by a reason of failure, as if it had been typed.
+function showReason(code) {
+  const input = find('filter');
+  input.value = `reason = ${/^\w+$/.test(code) ? code : `"${code}"`}`;
+  input.dispatchEvent(new Event('input'));
+  input.scrollIntoView({ block: 'nearest' });
+  input.focus({ preventScroll: true });
+}
+
+// How an optimisation that has ended went.
+async function readHistory() {
+  const { history: list } = await request(jobUrl(study.id, '/result'));
+  wanted = { ...wanted, history: list };
+  showHistory();
 }
 
 // What the study is after. Its document may be long, so nothing waits for it.
@@ -216,6 +235,9 @@ async function readDocument() {
   const { objective, ranking } = await request(jobUrl(study.id, '/document'));
   wanted = { objective, ranking };
   showHistory();
+  if (objective && !isActive(study.state)) {
+    await readHistory();
+  }
   if (ranking) {
     panels.at(-1)?.offerPreset();
   }
@@ -233,7 +255,7 @@ async function start() {
     return;
   }
   find('study').hidden = false;
-  const status = new Status(takeDesigns);
+  const status = new Status(takeDesigns, showReason);
   status.start(study);
   setUp();
   setUpDownloads(

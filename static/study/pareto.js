@@ -110,14 +110,14 @@ export class Pareto {
 
   line(design) {
     const row = this.rowOf.get(design.job);
-    const name = this.designs.name(row);
+    const name = this.designs.label(row);
     const box = make('input', { type: 'checkbox', 'aria-label': `Pick ${name}`, 'data-pick': row });
     box.addEventListener('change', () => this.onPick(row, box.checked));
     const line = make(
       'tr',
       {},
       make('td', {}, box),
-      make('th', { scope: 'row' }, make('a', { href: `/jobs/${design.job}` }, name)),
+      make('th', { scope: 'row' }, make('a', { href: `/jobs/${design.job}`, title: this.designs.name(row) }, name)),
       ...design.values.map((value) => make('td', { class: 'number' }, number(value))),
     );
     line.addEventListener('pointerenter', () => this.onHover(row));

@@ -157,7 +157,11 @@ export class Ranking {
         return make(
           'li',
           { value: design.rank },
-          make('a', { href: `/jobs/${design.job}` }, row === undefined ? design.name : this.designs.name(row)),
+          make(
+            'a',
+            { href: `/jobs/${design.job}`, title: design.name },
+            row === undefined ? design.name : this.designs.label(row),
+          ),
           bar,
           make('span', { class: 'number' }, design.score.toFixed(3)),
         );

@@ -20,9 +20,9 @@ function counted(counts, states) {
 }
 
 export class Status {
-  // onData(): there may be new designs.
-  constructor(onData) {
-    this.onData = onData;
+  // onData(): there may be new designs. onReason(code): those that failed for this reason are wanted.
+  constructor(onData, onReason) {
+    Object.assign(this, { onData, onReason });
     this.seen = '';
     this.lookedAt = 0;
     find('extend-form').addEventListener('submit', (event) => {
@@ -134,6 +134,14 @@ export class Status {
     }
   }
 
+  // Shows only the designs that failed for this reason.
+  reasonButton(code, count) {
+    const title = 'Show only these designs';
+    const button = make('button', { type: 'button', class: 'chip', title }, `${count} × ${stateWord(code)}`);
+    button.addEventListener('click', () => this.onReason(code));
+    return button;
+  }
+
   showFailures(failures) {
     find('failures').hidden = failures.length === 0;
     find('failure-list').replaceChildren(
@@ -141,7 +149,7 @@ export class Status {
         make(
           'li',
           {},
-          make('strong', {}, `${count} × ${stateWord(code)}`),
+          this.reasonButton(code, count),
           ': ',
           ...jobs.flatMap((job, i) => [i > 0 ? ', ' : '', make('a', { href: `/jobs/${job}` }, `job ${job}`)]),
           count > jobs.length ? ' and more' : '',

@@ -153,7 +153,7 @@ export class DesignTable {
 
   fillLine(line, row, place) {
     const { designs } = this;
-    const name = designs.name(row);
+    const name = designs.label(row);
     line.element.dataset.row = row;
     line.element.setAttribute('aria-rowindex', place + 2);
     line.box.checked = this.picked.has(row);
@@ -165,7 +165,7 @@ export class DesignTable {
     line.version = designs.version;
     setText(line.link, name);
     line.link.href = `/jobs/${designs.jobs[row]}`;
-    line.link.title = name;
+    line.link.title = designs.name(row);
     line.state.className = `state ${designs.state(row)}`;
     setText(line.state, stateWord(designs.state(row)));
     line.state.title = designs.reasons[row] || '';

@@ -146,6 +146,13 @@ async function testTable(visit, { check }) {
   await visit.until('one that makes no sense is refused with its reason', () =>
     /Bending angle is a number in °, not “much”/.test(document.getElementById('filter-problem').textContent),
   );
+  await page.click('#failure-list .chip');
+  await visit.until(
+    'a group of failures can be looked at alone',
+    () =>
+      document.getElementById('filter').value === 'reason = diverged' &&
+      document.getElementById('selected').textContent === '200 of 10000 designs',
+  );
   await page.fill('#filter', 'material = dragon-skin-20');
   await page.check('#only-differences');
   await visit.until(
