@@ -53,12 +53,23 @@ static enum status drawing_read(const struct service *service, int64_t id, struc
   return status;
 }
 
+/* Of all that the picture follows from but the jobs: the plot and the question. */
+static uint64_t tag_of_question(const struct request *request, const char *plot) {
+  uint64_t tag = cache_tag_add(cache_tag(), plot, strlen(plot) + 1);
+  for (size_t i = 0; i < request->url.query_count; i++) {
+    const struct url_pair *pair = &request->url.query[i];
+    tag = cache_tag_add(tag, pair->name, strlen(pair->name) + 1);
+    tag = cache_tag_add(tag, pair->value, strlen(pair->value) + 1);
+  }
+  return tag;
+}
+
 /* Draws the jobs and replies with the picture or the reason why there is none. */
 static void plot_reply(struct request *request, struct reply *reply, const char *plot,
                        const int64_t *ids, size_t count) {
   struct error error = {.status = STATUS_OK};
   struct plot_input inputs[OVERLAY_MAX];
-  uint64_t tag = cache_tag();
+  uint64_t tag = tag_of_question(request, plot);
   unsigned char *png = NULL;
   size_t size = 0;
   struct plot_sheet sheet;

@@ -64,6 +64,14 @@ fetch GET "/api/v1/jobs/$id/plots/angle.png"
 etag=$(header ETag)
 fetch GET "/api/v1/jobs/$other/plots/angle.png" -H "If-None-Match: $etag"
 check "a plot with another title" 200 "$CODE"
+for other in "jobs/$id/plots/angle.png?" "plots/overlay.png?jobs=$id&"; do
+  fetch GET "/api/v1/$other"
+  etag=$(header ETag)
+  fetch GET "/api/v1/${other}theme=dark" -H "If-None-Match: $etag"
+  check "a plot on a dark ground" 200 "$CODE"
+  fetch GET "/api/v1/${other}width=400" -H "If-None-Match: $etag"
+  check "a smaller plot" 200 "$CODE"
+done
 fetch GET "/api/v1/jobs/$id"
 check "a job is never kept" "no-store " "$(header Cache-Control) $(header ETag)"
 fetch GET "/api/v1/jobs/$id/plots/nothing.png" -H 'If-None-Match: "x"'
