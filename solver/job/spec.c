@@ -193,6 +193,8 @@ static enum status read_response(const struct reader *reader, const json_t *docu
   const char *symmetry = json_string_value(json_object_get(document, "symmetry"));
   spec->whole_model = strcmp(symmetry, "none") == 0;
   spec->error_estimate = json_is_true(json_object_get(document, "error_estimate"));
+  spec->few_files = json_is_string(json_object_get(document, "files")) &&
+                    strcmp(json_string_value(json_object_get(document, "files")), "few") == 0;
   spec->timeout_s = reader_member(reader, document, "timeout", "s", 0.0);
   const json_t *actuator = json_object_get(document, "actuator");
   spec->family = read_family(json_string_value(json_object_get(actuator, "family")));

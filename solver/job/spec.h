@@ -275,7 +275,7 @@ struct job_spec {
   struct snap_spec *snap;         /* of a snap job, else NULL; likewise */
   struct bistable_spec *bistable; /* of a bistable job, else NULL; likewise. Also of a snap
                                    * job with dynamics */
-  struct grasp_spec *grasp; /* of a grasp job, else NULL; likewise */
+  struct grasp_spec *grasp;       /* of a grasp job, else NULL; likewise */
   bool contact;
   struct plane_spec plane[PLANES_MAX];
   int plane_count;
@@ -283,6 +283,7 @@ struct job_spec {
   bool half_model;  /* symmetric about y = 0 in geometry and load, and not whole_model */
   enum accuracy accuracy;
   bool error_estimate; /* solve the end of the load path on a finer mesh, too */
+  bool few_files;      /* no VTU files and no deck */
   double timeout_s;    /* 0: none */
   double memory_bytes; /* limit of each process, 0: none of the job's own; of every kind */
   int priority;        /* -100 .. 100; of every kind */

@@ -125,6 +125,11 @@ static enum status write_collection(struct export *e, const struct series *s, st
   return status;
 }
 
+/* Number of series that are written. */
+static int views(const struct export *e) {
+  return e->spec->few_files ? 0 : 2;
+}
+
 /* Files of the last state taken in. */
 static enum status write_state(struct export *e, const struct fe_state *state,
                                struct error *error) {
@@ -136,7 +141,7 @@ static enum status write_state(struct export *e, const struct fe_state *state,
     return error_set(error, status, NULL, "no memory for the fields of a state");
   }
   size_t k = e->file_count;
-  for (int v = 0; v < 2 && status == STATUS_OK; v++) {
+  for (int v = 0; v < views(e) && status == STATUS_OK; v++) {
     struct series *s = &e->series[v];
     struct output output;
     snprintf(s->file[k], sizeof s->file[k], "%s-%04d.vtu", s->name, e->recorded - 1);
@@ -148,7 +153,7 @@ static enum status write_state(struct export *e, const struct fe_state *state,
   }
   e->time[k] = 1e-3 * e->pressure;
   e->file_count += status == STATUS_OK;
-  for (int v = 0; v < 2 && status == STATUS_OK; v++) {
+  for (int v = 0; v < views(e) && status == STATUS_OK; v++) {
     status = write_collection(e, &e->series[v], error);
   }
   e->written = e->recorded - 1;
@@ -216,10 +221,10 @@ enum status export_finish(struct export *e, const struct fe_state *last, const j
   if (status == STATUS_OK && e->file_count > 0) {
     status = write_table(e, TABLE_RECORDING, "surface.bin", NULL, artifacts, error);
   }
-  if (status == STATUS_OK && deck_knows(&e->spec->material)) {
+  if (status == STATUS_OK && !e->spec->few_files && deck_knows(&e->spec->material)) {
     status = write_table(e, TABLE_DECK, "model.inp", NULL, artifacts, error);
   }
-  for (int v = 0; v < 2 && status == STATUS_OK && e->file_count > 0; v++) {
+  for (int v = 0; v < views(e) && status == STATUS_OK && e->file_count > 0; v++) {
     json_array_append_new(artifacts, json_sprintf("%s.pvd", e->series[v].name));
     for (size_t k = 0; k < e->file_count; k++) {
       json_array_append_new(artifacts, json_string(e->series[v].file[k]));
