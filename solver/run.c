@@ -125,6 +125,7 @@ static void hand_over(struct run *run, enum status ending) {
   struct run_carry *carry = run->options->carry;
   if (carry && run->solve.model && ending == STATUS_OK) {
     run_carry_release(carry);
+    path_record_note_pairs(run->path, run->solve.model);
     *carry = (struct run_carry){run->path, model_release_analysis(run->solve.model)};
     run->path = NULL;
   }
@@ -164,6 +165,7 @@ static enum status solve(struct run *run, json_t **document, enum status *ending
     estimate(run);
   }
   if (run->options->path_out) {
+    path_record_note_pairs(run->path, run->solve.model);
     status = path_record_write(run->path, run->options->path_out, error);
   }
   if (status == STATUS_OK && run->options->out_dir) {

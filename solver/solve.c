@@ -1,5 +1,9 @@
 #include "solver/solve.h"
 
+/* Tolerances of a draft relative to those of others: what they leave open, 1e-4 of the angle, is
+ * far less than what the mesh does. */
+static const double draft_step = 10, draft_traction = 3;
+
 bool solve_has_gravity(const struct job_spec *spec) {
   const double *g = spec->load.gravity;
   return g[0] != 0 || g[1] != 0 || g[2] != 0;
@@ -40,6 +44,11 @@ enum status solve_prepare_solver(const struct job_spec *spec, struct solve *solv
   }
   /* 1 % of the pressure between chambers leaves a penetration far below the wall thickness. */
   solve->solver->options.traction_tolerance = 0.01 * spec->load.pressure_to;
+  if (spec->accuracy == ACCURACY_DRAFT) {
+    solve->solver->options.traction_tolerance *= draft_traction;
+    solve->solver->options.step_tolerance *= draft_step;
+    solve->solver->options.hasty = true;
+  }
   if (state_create(solve->model, &solve->state) != STATUS_OK) {
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the state");
   }

@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include "solver/base/clock.h"
 #include "solver/fe/obstacle_internal.h"
 #include "solver/fe/settling.h"
 
@@ -20,6 +19,8 @@ enum {
 static const double little_overlap = 0.002, most_overlap = 0.015;
 /* Change of the forces of rigid objects that is put up with when they do not settle. */
 static const double unsettled_forces = 0.02;
+/* Steps of which less than this part can be taken are cut short by far. */
+static const double rough_share = 0.25;
 /* Movement of a body at rest, in step tolerances. */
 static const double still_moves = 30;
 
@@ -141,14 +142,6 @@ static void apply(struct equilibrium *s, struct fe_state *state, double *correct
   retraction_apply(s->retraction, state->u, s->increment);
 }
 
-enum status equilibrium_check_limits(const struct equilibrium *s) {
-  const struct equilibrium_options *o = &s->options;
-  if (o->cancelled && o->cancelled(o->cancel_context)) {
-    return STATUS_CANCELLED;
-  }
-  return o->deadline_s > 0 && clock_wall_s() > o->deadline_s ? STATUS_TIMEOUT : STATUS_OK;
-}
-
 /* Residual at a trial state reached by a correction of at most `most`. When that is far the
  * partners of the contact are found anew: a part of the body that has passed into another, where
  * no closest point pushes it back, makes the trial as useless as an inverted element; so does one
@@ -245,6 +238,7 @@ static enum status step_and_polish(struct equilibrium *s, struct fe_load *load, 
             share, s->negative_pivots, c.active, c.min_gap, *load_parameter(s, load));
   }
   s->moved += size;
+  s->share = share;
   *converged = status == STATUS_OK && share == 1 && polish(s, load, state, size, 0.1);
   return status;
 }
@@ -268,6 +262,7 @@ static enum status newton(struct equilibrium *s, struct fe_load *load, double st
                           struct fe_state *state, int *iterations) {
   struct fe_model *m = s->model;
   struct progress progress = {INFINITY, 0};
+  int rough = 0;
   s->fewest_negative = m->dof_count;
   s->most_negative = 0;
   for (int it = 0; it < s->options.max_iterations; it++) {
@@ -296,6 +291,10 @@ static enum status newton(struct equilibrium *s, struct fe_load *load, double st
     status = step_and_polish(s, load, change, state, size, &converged);
     if (status != STATUS_OK || converged) {
       return status;
+    }
+    rough += s->share < rough_share;
+    if (s->options.rough_steps > 0 && rough >= s->options.rough_steps) {
+      return STATUS_DIVERGED;
     }
   }
   return STATUS_DIVERGED;
@@ -371,6 +370,9 @@ static enum status augment(struct equilibrium *s, struct fe_load *load, struct f
     if (status != STATUS_OK) {
       return status;
     }
+    if (s->options.passing && m->obstacle_count == 0) {
+      return STATUS_OK;
+    }
     shift = s->settling ? settling_measure(s->settling, m) : 0;
     change = contact_update_multipliers(&m->contact, &relaxation);
     if (s->verbose) {
@@ -444,6 +446,14 @@ enum status equilibrium_solve(struct equilibrium *s, const struct fe_load *targe
   return status;
 }
 
+void equilibrium_direction(struct equilibrium *s, const struct fe_state *state, double *direction) {
+  load_force(s, state, s->control.force);
+  model_solve(s->model, s->control.force, direction);
+  for (int i = 0; i < s->model->dof_count; i++) {
+    direction[i] = -direction[i];
+  }
+}
+
 enum status equilibrium_tangent(struct equilibrium *s, const struct fe_load *target, bool dead,
                                 const struct fe_state *state, double *direction) {
   struct fe_load load = *target;
@@ -455,11 +465,7 @@ enum status equilibrium_tangent(struct equilibrium *s, const struct fe_load *tar
   }
   s->negative_pivots = model_factor(s->model);
   s->control.dead = dead;
-  load_force(s, state, s->control.force);
-  model_solve(s->model, s->control.force, direction);
-  for (int i = 0; i < s->model->dof_count; i++) {
-    direction[i] = -direction[i];
-  }
+  equilibrium_direction(s, state, direction);
   return isfinite(rms(s, direction)) ? STATUS_OK : STATUS_DIVERGED;
 }
 

@@ -14,7 +14,10 @@ struct equilibrium_options {
   double force_tolerance; /* change of the forces of rigid objects at the end, as a part of them */
   double overlap_tolerance; /* put up with where single tractions do not settle, m; 0: none */
   int max_iterations;
-  double deadline_s;                /* on clock_wall_s; 0: none */
+  int rough_steps;   /* given up after so many steps that had to be cut short by far; 0: never */
+  bool passing;      /* the state is only passed: its contact need not have settled */
+  bool hasty;        /* for paths: what lies between recorded states is only passed */
+  double deadline_s; /* on clock_wall_s; 0: none */
   bool (*cancelled)(void *context); /* may be NULL */
   void *cancel_context;
 };
@@ -64,6 +67,7 @@ struct equilibrium {
   int negative_pivots;       /* of the last factorisation */
   int fewest_negative, most_negative; /* over the factorisations of the last solve */
   double moved; /* sum of the rms of corrections since it was last set to 0, m */
+  double share; /* part of the last step that was taken */
   int verbose;  /* 1: a line an iteration on standard error */
 };
 
@@ -89,6 +93,10 @@ enum status equilibrium_solve(struct equilibrium *solver, const struct fe_load *
  * Returns STATUS_OK, DIVERGED when the tangent is singular, INVERTED or NO_MEMORY. */
 enum status equilibrium_tangent(struct equilibrium *solver, const struct fe_load *load, bool dead,
                                 const struct fe_state *state, double *direction);
+
+/* The same with the factor that the last equilibrium left behind (factor_fits), without another. */
+void equilibrium_direction(struct equilibrium *solver, const struct fe_state *state,
+                           double *direction);
 
 /* One step of arc length: from a state in equilibrium with *load along the tangent `direction` of
  * equilibrium_tangent by `change` of the load parameter (its sign is that of the step); then the

@@ -1,6 +1,7 @@
 /* Making and unmaking of the equilibrium solver. */
 #include <math.h>
 #include <stdlib.h>
+#include "solver/base/clock.h"
 #include "solver/fe/equilibrium.h"
 #include "solver/fe/settling.h"
 
@@ -65,4 +66,12 @@ void equilibrium_destroy(struct equilibrium *s) {
   free(s->control.force);
   free(s->control.response);
   free(s);
+}
+
+enum status equilibrium_check_limits(const struct equilibrium *s) {
+  const struct equilibrium_options *o = &s->options;
+  if (o->cancelled && o->cancelled(o->cancel_context)) {
+    return STATUS_CANCELLED;
+  }
+  return o->deadline_s > 0 && clock_wall_s() > o->deadline_s ? STATUS_TIMEOUT : STATUS_OK;
 }

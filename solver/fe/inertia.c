@@ -130,7 +130,7 @@ void inertia_only(const struct inertia *inertia, struct fe_model *m) {
     add_stiffness(inertia, e, packed);
     m->clique_value[e] = packed;
   }
-  for (int p = 0; m->use_contact && p < m->contact.pair_count; p++) {
+  for (int p = 0; p < m->pattern_pairs; p++) {
     m->clique_value[elements + (size_t)p] = NULL;
   }
 }

@@ -48,72 +48,6 @@ static void number_unknowns(struct fe_model *m) {
   }
 }
 
-/* Cliques: all elements, then the pairs of the contact. */
-static void list_cliques(const struct fe_model *m, int pairs, int *start, int *dofs) {
-  const struct mesh *mesh = m->mesh;
-  int next = 0, clique = 0;
-  start[0] = 0;
-  for (int e = 0; e < mesh->element_count; e++) {
-    for (int i = 0; i < 3; i++) {
-      for (int a = 0; a < HEX27_NODES; a++) {
-        dofs[next++] = m->equation[3 * mesh->element_nodes[HEX27_NODES * e + a] + i];
-      }
-    }
-    start[++clique] = next;
-  }
-  for (int p = 0; p < pairs; p++) {
-    int nodes[CONTACT_NODES];
-    contact_nodes(&m->contact, p, nodes);
-    for (int r = 0; r < CONTACT_DOFS; r++) {
-      dofs[next++] = m->equation[3 * nodes[r / 3] + r % 3];
-    }
-    start[++clique] = next;
-  }
-}
-
-/* Room for the values of the pairs' cliques. */
-static bool allocate_cliques(struct fe_model *m, size_t elements, size_t pairs) {
-  double *value = realloc(m->contact_value, sizeof *value * (pairs * CONTACT_PACKED + 1));
-  m->contact_value = value ? value : m->contact_value;
-  const double **clique = realloc(m->clique_value, sizeof *clique * (elements + pairs + 1));
-  m->clique_value = clique ? clique : m->clique_value;
-  return value && clique;
-}
-
-enum status model_analyse(struct fe_model *m, struct error *error) {
-  const struct mesh *mesh = m->mesh;
-  int pairs = m->use_contact ? m->contact.pair_count : 0;
-  int cliques = mesh->element_count + pairs;
-  size_t entries = (size_t)mesh->element_count * ELEMENT_DOFS + (size_t)pairs * CONTACT_DOFS;
-  int *start = malloc(sizeof *start * ((size_t)cliques + 1));
-  int *dofs = malloc(sizeof *dofs * (entries + 1));
-  enum status status;
-  if (!start || !dofs || !allocate_cliques(m, (size_t)mesh->element_count, (size_t)pairs)) {
-    status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for %d cliques", cliques);
-    goto done;
-  }
-  list_cliques(m, pairs, start, dofs);
-  ldlt_destroy(m->ldlt);
-  m->ldlt = NULL;
-  struct ldlt_pattern pattern = {m->dof_count, mesh->node_count, m->node_of, cliques, start, dofs};
-  if (m->spare && ldlt_fits(m->spare, &pattern)) {
-    m->ldlt = m->spare;
-    m->spare = NULL;
-    status = STATUS_OK;
-  } else {
-    ldlt_destroy(m->spare);
-    m->spare = NULL;
-    status = ldlt_create(&pattern, &m->ldlt, error);
-    m->statistics.analyses++;
-  }
-  m->pattern_stale = status != STATUS_OK;
-  m->factor = status == STATUS_OK ? ldlt_statistics(m->ldlt) : m->factor;
-done:
-  free(start);
-  free(dofs);
-  return status;
-}
-
 static bool allocate(struct fe_model *m) {
   size_t nodes = (size_t)m->mesh->node_count, elements = (size_t)m->mesh->element_count;
   size_t faces = (size_t)m->mesh->face_count;
@@ -126,8 +60,9 @@ static bool allocate(struct fe_model *m) {
   m->node_of = calloc(3 * nodes, sizeof *m->node_of);
   m->residual = calloc(3 * nodes, sizeof *m->residual);
   m->element_value = calloc(elements * ELEMENT_PACKED, sizeof *m->element_value);
+  m->clique_value = calloc(elements + 1, sizeof *m->clique_value);
   return m->geometry && m->internal && m->cavity_start && m->cavity_face && m->dead_load &&
-         m->equation && m->node_of && m->residual && m->element_value;
+         m->equation && m->node_of && m->residual && m->element_value && m->clique_value;
 }
 
 enum status model_create(const struct mesh *mesh, const struct material_spec *material,
@@ -174,10 +109,10 @@ enum status model_create_with(const struct mesh *mesh, const struct material_spe
     const struct contact_plane mirror = {{0, 0, 0}, {0, 1, 0}, true};
     status = contact_add_plane(&m->contact, &mirror);
   }
-  if (status == STATUS_OK && spare && allocate_cliques(m, (size_t)mesh->element_count, 0)) {
-    m->pattern_stale = true; /* the contact of the first tangent is not that of the body at rest */
-  } else if (status == STATUS_OK) {
-    status = model_analyse(m, error);
+  m->pattern_stale = true;
+  if (status == STATUS_OK && !spare && /* which would not fit the body at rest */
+      (!model_room_for_pairs(m) || model_renew_pattern(m) != STATUS_OK)) {
+    status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the tangent");
   }
   if (status != STATUS_OK) {
     model_destroy(m);
@@ -213,6 +148,9 @@ void model_destroy(struct fe_model *m) {
   free(m->element_value);
   free(m->contact_value);
   free(m->clique_value);
+  free(m->pair_touches);
+  free(m->pair_clique);
+  free(m->pair_foreseen);
   free(m);
 }
 

@@ -49,11 +49,15 @@ struct fe_model {
                                        * unless the caller sets it before any state is made */
   double *dead_load;                  /* node_count x 3, N at factor 1; the caller may add to it */
   int dof_count;
-  int *equation;         /* node_count x 3, -1 where held */
-  int *node_of;          /* dof_count */
-  double *residual;      /* dof_count, N */
-  double *element_value; /* packed tangents */
-  double *contact_value; /* packed tangents */
+  int *equation;                /* node_count x 3, -1 where held */
+  int *node_of;                 /* dof_count */
+  double *residual;             /* dof_count, N */
+  double *element_value;        /* packed tangents */
+  double *contact_value;        /* packed tangents of the listed pairs */
+  unsigned char *pair_touches;  /* of every listed pair: in the last tangent */
+  unsigned char *pair_foreseen; /* pairs that the next analysis takes in as well, or NULL */
+  int *pair_clique;             /* of every listed pair: its clique behind the elements, or -1 */
+  int pair_room, pattern_pairs; /* pairs that there is room for, and pairs with a clique */
   const double **clique_value;
   bool use_contact;   /* of the surface with itself */
   bool pattern_stale; /* the pairs of the contact are not those of the analysis */
@@ -81,6 +85,13 @@ void model_destroy(struct fe_model *model);
 enum status model_create_with(const struct mesh *mesh, const struct material_spec *material,
                               bool use_contact, struct ldlt *spare, struct fe_model **out,
                               struct error *error);
+
+/* Which of the pairs across gaps are part of the analysed tangent: facing[mesh->facing_count]. */
+void model_tell_pattern(const struct fe_model *model, unsigned char *facing);
+
+/* Has the next analysis take in these pairs, too: those of a neighbouring body, whose analysis then
+ * fits. STATUS_NO_MEMORY. */
+enum status model_foresee_pattern(struct fe_model *model, const unsigned char *facing);
 
 /* Takes the analysis out of a model that is solved no more, for model_create_with; ldlt_destroy is
  * then the caller's. */

@@ -27,10 +27,10 @@ static void evaluate_pairs(struct fe_model *m, const double *u, bool tangent) {
     int nodes[CONTACT_NODES];
     double x[CONTACT_NODES][3], r[CONTACT_DOFS];
     pair_positions(m, u, p, nodes, x);
-    double *packed = m->contact_value + (size_t)p * CONTACT_PACKED;
-    bool touches = contact_evaluate(&m->contact, p, x, r, tangent ? packed : NULL);
+    double *packed = tangent ? m->contact_value + (size_t)p * CONTACT_PACKED : NULL;
+    bool touches = contact_evaluate(&m->contact, p, x, r, packed);
     if (tangent) {
-      m->clique_value[m->mesh->element_count + p] = touches ? packed : NULL;
+      m->pair_touches[p] = touches;
     }
     if (touches) {
       add_force(m, nodes, CONTACT_NODES, r);
@@ -115,14 +115,17 @@ enum status model_evaluate_contact(struct fe_model *m, const double *u, bool tan
       return status;
     }
   }
-  if (tangent && m->pattern_stale) {
-    enum status status = model_analyse(m, NULL);
-    if (status != STATUS_OK) {
-      return status;
-    }
+  if (tangent && !model_room_for_pairs(m)) {
+    return STATUS_NO_MEMORY;
   }
   if (m->use_contact) {
     evaluate_pairs(m, u, tangent);
+  }
+  if (tangent) {
+    enum status status = model_renew_pattern(m);
+    if (status != STATUS_OK) {
+      return status;
+    }
   }
   for (int k = 0; k < m->contact.plane_count; k++) {
     evaluate_plane(m, u, k, tangent);

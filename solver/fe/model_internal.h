@@ -7,9 +7,13 @@
 /* Index of entry (r, c), r <= c, in an upper triangle of order n packed by rows. */
 size_t model_packed_index(int n, int r, int c);
 
-/* Orders and analyses the tangent for the present pairs of the contact; makes room for their
- * cliques. */
-enum status model_analyse(struct fe_model *model, struct error *error);
+/* Makes room for the tangents of the listed pairs. False when memory runs out. */
+bool model_room_for_pairs(struct fe_model *model);
+
+/* Hands the tangents of the pairs that touch to the cliques, after the pairs have been evaluated;
+ * when one of them is not in the analysed pattern, or the list of pairs is another one, the tangent
+ * is ordered and analysed anew. STATUS_NO_MEMORY. */
+enum status model_renew_pattern(struct fe_model *model);
 
 /* Adds contact to the residual and, with `tangent`, to the cliques, after the elements have been
  * evaluated. With `tangent` the partners are found anew first. STATUS_NO_MEMORY. */

@@ -10,8 +10,13 @@ static const double cut_factor = 0.4;
 static const double grow_factor = 2;
 /* Foreseen at the first step: movement in longest steps, overlap in widths of the gap. */
 static const double foreseen = 0.8, closing = 0.3;
+/* Overlap foreseen at later steps, likewise. */
+static const double passing = 1;
 enum {
   HALVINGS = 6,
+  SHORTENINGS = 2,
+  ROUGH_STEPS = 3,
+  LONG_STEP = 4, /* in smallest ones */
   EASY_ITERATIONS = 6,
   SMALLEST_PART = 60 /* of the load: below that, arc length */
 };
@@ -62,12 +67,66 @@ static double next_target(const struct walk *w, double goal) {
   return target > goal - 0.05 * w->step ? goal : target;
 }
 
+/* Whether a step of the load along `direction` closes gaps by more than `share` of their width. */
+static bool step_closes(struct walk *w, double step, const double *direction, double share,
+                        double *most) {
+  struct fe_model *m = w->solver->model;
+  *most = 0;
+  state_copy(m, &w->trial, w->state);
+  for (int d = 0; d < 3 * m->mesh->node_count; d++) {
+    double move = m->equation[d] >= 0 ? step * direction[m->equation[d]] : 0;
+    w->trial.u[d] += move;
+    *most = fmax(*most, fabs(move));
+  }
+  model_update_gaps(m, &w->trial);
+  return m->use_contact && contact_summarise(&m->contact).min_gap < -share * m->mesh->gap_width;
+}
+
+/* Shortens a step to `goal` by which, as the factor of the last equilibrium foresees, the body
+ * would pass far into itself: Newton's method would not find out of that. */
+static enum status shorten(struct walk *w, const struct stage *stage, double *target) {
+  struct equilibrium *solver = w->solver;
+  struct fe_model *m = solver->model;
+  if (!solver->options.hasty || stage->dead || !solver->factor_fits || !m->use_contact ||
+      m->mesh->facing_count == 0) {
+    return STATUS_OK;
+  }
+  double *direction = calloc((size_t)m->dof_count + 1, sizeof *direction), most;
+  if (!direction) {
+    return STATUS_NO_MEMORY;
+  }
+  equilibrium_direction(solver, w->state, direction);
+  double step = *target - w->value;
+  for (int k = 0; k < SHORTENINGS && step_closes(w, step, direction, passing, &most); k++) {
+    step *= 0.5;
+    *target = w->value + step;
+    w->step = step;
+  }
+  model_update_gaps(m, w->state);
+  free(direction);
+  return STATUS_OK;
+}
+
+/* In haste a long step that does not go well is given up early, and no contact settles on the way.
+ */
+static void be_hasty(struct walk *w, const struct stage *stage, double target, double goal) {
+  struct equilibrium_options *o = &w->solver->options;
+  bool is_long = target - w->value > LONG_STEP * stage->end / SMALLEST_PART;
+  o->rough_steps = o->hasty && is_long ? ROUGH_STEPS : 0;
+  o->passing = o->hasty && target < goal;
+}
+
 /* Reaches `goal`, by load steps or, where they get too short, by arc length. */
 static enum status reach(struct walk *w, const struct stage *stage, double goal) {
   while (w->value < goal) {
     double target = next_target(w, goal);
+    if (shorten(w, stage, &target) != STATUS_OK) {
+      return STATUS_NO_MEMORY;
+    }
     int iterations;
+    be_hasty(w, stage, target, goal);
     enum status status = walk_advance(w, stage, target, &iterations);
+    w->solver->options.passing = false;
     if (walk_final(status)) {
       return status;
     }
@@ -111,16 +170,8 @@ static enum status foresee(struct walk *w, const struct stage *stage) {
                            ? equilibrium_tangent(solver, &load, stage->dead, w->state, direction)
                            : STATUS_NO_MEMORY;
   for (int k = 0; status == STATUS_OK && k < HALVINGS; k++) {
-    double most = 0;
-    state_copy(m, &w->trial, w->state);
-    for (int d = 0; d < 3 * m->mesh->node_count; d++) {
-      double move = m->equation[d] >= 0 ? w->step * direction[m->equation[d]] : 0;
-      w->trial.u[d] += move;
-      most = fmax(most, fabs(move));
-    }
-    model_update_gaps(solver->model, &w->trial);
-    double gap = contact_summarise(&m->contact).min_gap;
-    bool closes = m->use_contact && gap < -closing * m->mesh->gap_width;
+    double most;
+    bool closes = step_closes(w, w->step, direction, closing, &most);
     if (most < foreseen * solver->options.longest_step && !closes) {
       break;
     }

@@ -10,11 +10,11 @@
 struct head {
   char magic[8];
   uint32_t order, version;
-  int32_t node_count, element_count, section_count, point_count, count, reserved;
+  int32_t node_count, element_count, section_count, point_count, count, facing_count;
   uint64_t topology;
 };
 static const char magic[8] = "pneupath";
-enum { BYTE_ORDER_MARK = 0x01020304, FILE_VERSION = 2, COUNT_MAX = 1 << 24 };
+enum { BYTE_ORDER_MARK = 0x01020304, FILE_VERSION = 3, COUNT_MAX = 1 << 24 };
 
 static bool allocate_state(const struct path_record *r, struct fe_state *state) {
   state->u = malloc(sizeof *state->u * (3 * (size_t)r->node_count + 1));
@@ -64,9 +64,11 @@ enum status path_record_create(const struct fe_model *m, struct path_record **ou
                             .element_count = mesh->element_count,
                             .section_count = mesh->section_count,
                             .point_count = m->contact.point_count,
+                            .facing_count = mesh->facing_count,
                             .topology = mesh_topology(mesh)};
   r->x = malloc(sizeof *r->x * (3 * (size_t)mesh->node_count + 1));
-  if (!r->x) {
+  r->facing = calloc((size_t)mesh->facing_count + 1, 1);
+  if (!r->x || !r->facing) {
     path_record_destroy(r);
     return STATUS_NO_MEMORY;
   }
@@ -83,9 +85,14 @@ void path_record_destroy(struct path_record *r) {
     state_release(&r->state[k]);
   }
   free(r->x);
+  free(r->facing);
   free(r->pressure);
   free(r->state);
   free(r);
+}
+
+void path_record_note_pairs(struct path_record *r, const struct fe_model *m) {
+  model_tell_pattern(m, r->facing);
 }
 
 enum status path_record_add(struct path_record *r, double pressure, const struct fe_state *state) {
@@ -122,10 +129,12 @@ static bool write_all(FILE *file, const struct path_record *r) {
                       .section_count = r->section_count,
                       .point_count = r->point_count,
                       .count = r->count,
+                      .facing_count = r->facing_count,
                       .topology = r->topology};
   memcpy(head.magic, magic, sizeof magic);
   bool good = fwrite(&head, sizeof head, 1, file) == 1 &&
-              transfer(file, true, r->x, 3 * (size_t)r->node_count);
+              transfer(file, true, r->x, 3 * (size_t)r->node_count) &&
+              fwrite(r->facing, 1, (size_t)r->facing_count, file) == (size_t)r->facing_count;
   for (int k = 0; k < r->count && good; k++) {
     good = transfer_state(file, true, r, k);
   }
@@ -151,8 +160,8 @@ enum status path_record_write(const struct path_record *r, const char *path, str
 }
 
 static bool plausible(const struct head *h) {
-  const int32_t counts[] = {h->node_count, h->element_count, h->section_count, h->point_count,
-                            h->count};
+  const int32_t counts[] = {h->node_count,  h->element_count, h->section_count,
+                            h->point_count, h->count,         h->facing_count};
   bool good = memcmp(h->magic, magic, sizeof magic) == 0 && h->order == BYTE_ORDER_MARK &&
               h->version == FILE_VERSION;
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
@@ -171,12 +180,15 @@ static enum status read_all(FILE *file, struct path_record *r, struct error *err
                             .element_count = h.element_count,
                             .section_count = h.section_count,
                             .point_count = h.point_count,
+                            .facing_count = h.facing_count,
                             .topology = h.topology};
   r->x = malloc(sizeof *r->x * (3 * (size_t)r->node_count + 1));
-  if (!r->x) {
+  r->facing = malloc((size_t)r->facing_count + 1);
+  if (!r->x || !r->facing) {
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for a path");
   }
-  bool good = transfer(file, false, r->x, 3 * (size_t)r->node_count);
+  bool good = transfer(file, false, r->x, 3 * (size_t)r->node_count) &&
+              fread(r->facing, 1, (size_t)r->facing_count, file) == (size_t)r->facing_count;
   for (int k = 0; k < h.count && good; k++) {
     if (!grow(r)) {
       return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for a path");
@@ -213,5 +225,6 @@ enum status path_record_read(const char *path, struct path_record **out, struct 
 bool path_record_fits(const struct path_record *r, const struct fe_model *m) {
   return r->count > 0 && r->node_count == m->mesh->node_count &&
          r->element_count == m->mesh->element_count && r->section_count == m->mesh->section_count &&
-         r->point_count == m->contact.point_count && r->topology == mesh_topology(m->mesh);
+         r->point_count == m->contact.point_count && r->facing_count == m->mesh->facing_count &&
+         r->topology == mesh_topology(m->mesh);
 }

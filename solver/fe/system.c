@@ -149,7 +149,8 @@ void model_multiply(const struct fe_model *m, const double *x, double *y) {
     multiply_clique(ELEMENT_DOFS, m->clique_value[e], dofs, x, y);
   }
   for (int p = 0; m->use_contact && p < m->contact.pair_count; p++) {
-    if (!m->clique_value[mesh->element_count + p]) {
+    int clique = mesh->element_count + m->pair_clique[p];
+    if (m->pair_clique[p] < 0 || !m->clique_value[clique]) {
       continue;
     }
     int nodes[CONTACT_NODES], dofs[CONTACT_DOFS];
@@ -157,7 +158,7 @@ void model_multiply(const struct fe_model *m, const double *x, double *y) {
     for (int r = 0; r < CONTACT_DOFS; r++) {
       dofs[r] = m->equation[3 * nodes[r / 3] + r % 3];
     }
-    multiply_clique(CONTACT_DOFS, m->clique_value[mesh->element_count + p], dofs, x, y);
+    multiply_clique(CONTACT_DOFS, m->clique_value[clique], dofs, x, y);
   }
 }
 

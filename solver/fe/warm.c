@@ -5,6 +5,9 @@
 #include <string.h>
 #include "solver/fe/section_form.h"
 
+/* In haste, a walk that does not go well is given up at once: another one begins at rest. */
+enum { ROUGH_STEPS = 1 };
+
 /* A mesh with the undeformed places of the record's body. */
 static struct mesh record_mesh(const struct path_record *r, const struct mesh *mesh) {
   struct mesh before = *mesh;
@@ -127,6 +130,7 @@ static enum status descend(struct descent *d) {
   const struct fe_model *m = d->solver->model;
   double previous = o->pressure_to;
   enum status status = path_record_carry(d->record, nearest(d->record, previous), m, d->state);
+  d->solver->options.rough_steps = d->solver->options.hasty ? ROUGH_STEPS : 0;
   for (int k = o->steps; k >= 0 && status == STATUS_OK; k--) {
     double pressure = o->pressure_to * k / o->steps;
     struct fe_load load = {pressure, pressure, o->dead_load ? 1 : 0};
@@ -146,6 +150,7 @@ static enum status descend(struct descent *d) {
     }
     previous = pressure;
   }
+  d->solver->options.rough_steps = 0;
   return status;
 }
 
@@ -182,7 +187,8 @@ enum status path_follow_warm(struct equilibrium *solver, const struct path_optio
     bool room = d.iterations && path_record_create(m, &d.found) == STATUS_OK &&
                 section_form_create(m->mesh, &d.old) == STATUS_OK &&
                 section_form_create(m->mesh, &d.last_old) == STATUS_OK &&
-                section_form_create(m->mesh, &d.last_new) == STATUS_OK;
+                section_form_create(m->mesh, &d.last_new) == STATUS_OK &&
+                model_foresee_pattern(solver->model, record->facing) == STATUS_OK;
     status = room ? descend(&d) : STATUS_NO_MEMORY;
   }
   *warm = status == STATUS_OK;

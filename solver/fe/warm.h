@@ -14,8 +14,10 @@
 /* Recorded states of a path, with the undeformed body they belong to. */
 struct path_record {
   int node_count, element_count, section_count, point_count;
-  uint64_t topology; /* of the mesh: bodies with another one are no neighbours */
-  double *x;         /* node_count x 3, undeformed, m */
+  uint64_t topology;     /* of the mesh: bodies with another one are no neighbours */
+  double *x;             /* node_count x 3, undeformed, m */
+  int facing_count;      /* pairs of faces across gaps */
+  unsigned char *facing; /* of each: whether it was part of the body's last tangents */
   int count, capacity;
   double *pressure; /* Pa, rising */
   struct fe_state *state;
@@ -28,6 +30,10 @@ void path_record_destroy(struct path_record *record);
 /* Appends a copy of a state. STATUS_OK or STATUS_NO_MEMORY. */
 enum status path_record_add(struct path_record *record, double pressure,
                             const struct fe_state *state);
+
+/* Notes which pairs of the contact the model's tangents have: the next body's are to have them,
+ * too. */
+void path_record_note_pairs(struct path_record *record, const struct fe_model *model);
 
 /* Writes the record in the machine's own number format, under a temporary name first; reads one
  * back. STATUS_IO with the reason, for a file of another version or machine, or a damaged one;

@@ -13,7 +13,7 @@ BASE = {
                  "chamber_gap": "1 mm", "side_wall": "2 mm", "gap_wall": "2 mm",
                  "top_wall": "1.5 mm", "bottom_layer": "6 mm"},
     "material": {"model": "yeoh", "C": ["0.25 MPa", "-0.05 MPa", "0.005 MPa"]},
-    "load": {"pressure": {"to": "20 kPa", "steps": 2}},
+    "load": {"pressure": {"to": "60 kPa", "steps": 2}},
     "accuracy": "draft", "error_estimate": False}
 PATCH = {"kind": "verify", "case": "patch-test"}
 
@@ -90,6 +90,10 @@ assert [s["warm_start"] for s in statistics] == [False, True, True, False], stat
 assert statistics[1]["factorizations"] < 0.7 * statistics[0]["factorizations"], statistics
 assert statistics[1]["analyses"] <= 1, statistics
 
+# Neighbours touch, and the pairs that do so are part of what is carried on.
+assert all(result("a", k)["metrics"]["contact_force_N"] > 1 for k in range(3))
+assert [s["analyses"] for s in statistics[1:3]] == [0, 0], statistics
+
 # The same answers as runs of their own, to the solver's tolerance.
 for k in range(4):
     alone = json.loads(subprocess.run([SOLVE, f"a/{k}-1/job.json"], capture_output=True, check=True,
@@ -116,6 +120,16 @@ write("d", JOBS[2:3], start="c/1-1/path")
 run("d")
 assert plain(result("d", 0)) == plain(result("a", 2))
 assert files("d", 0) == files("a", 2)
+
+# A job that wants few files has no fields of the volume, but all that tables and plots are made of.
+write("f", [dict(JOBS[0], files="few")])
+run("f")
+few, many = result("f", 0), result("a", 0)
+assert few["metrics"] == many["metrics"]
+assert set(few["artifacts"]) == {"samples.csv", "midlines.csv", "surface.bin", "surface.json"}, few
+assert set(few["artifacts"]) < set(many["artifacts"]), many
+for name in few["artifacts"]:
+    assert files("f", 0)[name] == files("a", 0)[name], name
 
 # Without them it starts anew, and says so.
 write("e", JOBS[2:3], start="nowhere/path")
