@@ -137,7 +137,7 @@ export class Status {
   // Shows only the designs that failed for this reason.
   reasonButton(code, count) {
     const title = 'Show only these designs';
-    const button = make('button', { type: 'button', class: 'chip', title }, `${count} × ${stateWord(code)}`);
+    const button = make('button', { type: 'button', class: 'small', title }, `${count} × ${stateWord(code)}`);
     button.addEventListener('click', () => this.onReason(code));
     return button;
   }
