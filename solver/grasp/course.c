@@ -352,6 +352,15 @@ static void close_ledger(struct course *c) {
   c->report->along = c->along;
 }
 
+/* Says how far the course came and why it ended there. */
+static void explain(const struct course *c, enum status status) {
+  bool known = c->failure != STATUS_OK && c->failure != status;
+  error_set(c->error, status, "/grasp", "stopped in the %s, after %.3g %% of it: %s%s%s%s",
+            grasp_stage_word(c->stage.kind), 100 * c->along, status_sentence(status),
+            known ? " (last attempt: " : "", known ? status_sentence(c->failure) : "",
+            known ? ")" : "");
+}
+
 enum status course_follow(struct finger *f, const struct course_visit *visit,
                           struct course_report *report, struct error *error) {
   struct stage stages[STAGE_COUNT];
@@ -368,14 +377,7 @@ enum status course_follow(struct finger *f, const struct course_visit *visit,
   }
   close_ledger(&c);
   if (status != STATUS_OK) {
-    char why[sizeof error->message];
-    snprintf(why, sizeof why, "%.500s", error->status == status ? error->message : "");
-    error_set(error, status, "/grasp", "stopped in the %s, after %.3g %% of it: %s%s%s%s",
-              grasp_stage_word(c.stage.kind), 100 * c.along, status_sentence(status),
-              c.failure != STATUS_OK ? " (last attempt: " : "",
-              c.failure != STATUS_OK ? status_sentence(c.failure) : "",
-              c.failure != STATUS_OK ? ")" : "");
-    (void)why;
+    explain(&c, status);
   }
   return status;
 }

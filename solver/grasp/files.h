@@ -1,5 +1,5 @@
 /* The files of a grasp:
- *   surface-NNNN.vtu   the skin of finger 1 with displacement, stretch, stress and contact pressure;
+ *   surface-NNNN.vtu   skin of finger 1: displacement, stretch, stress, contact pressure;
  *                      finger-K-surface-NNNN.vtu that of finger K, where it was computed
  *   object-NNNN.vtu    the object's surface, where it then is, in the frame of finger 1
  *   *.pvd              the lists of them by the time of the course in s

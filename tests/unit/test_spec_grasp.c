@@ -245,6 +245,25 @@ START_TEST(symmetry_depends_on_shape_and_pose) {
 }
 END_TEST
 
+/* A body of revolution across the finger is symmetric when its profile is. */
+START_TEST(an_even_profile_is_symmetric) {
+  static const char *const top[] = {"3 cm", "2 cm"};
+  for (int i = 0; i < 2; i++) {
+    char shape[200];
+    snprintf(shape, sizeof shape,
+             "{\"form\": \"revolution\", \"profile\": [[\"-5 cm\", \"3 cm\"], [0, \"4 cm\"], "
+             "[\"5 cm\", \"%s\"]]}",
+             top[i]);
+    const char *const edits[][2] = {
+        {"/object/shape", shape}, {"/object/axis", "[0, 1, 0]"}, {NULL, NULL}};
+    struct job_spec spec;
+    read_grasp(edits, &spec);
+    ck_assert_int_eq(grasp_symmetric(spec.grasp), i == 0);
+    job_spec_release(&spec);
+  }
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("job: grasps");
   TCase *tcase = tcase_create("all");
@@ -254,6 +273,7 @@ int main(void) {
   tcase_add_test(tcase, a_plate_faces_the_tip);
   tcase_add_test(tcase, fingers_see_an_object_on_the_axis_alike);
   tcase_add_test(tcase, symmetry_depends_on_shape_and_pose);
+  tcase_add_test(tcase, an_even_profile_is_symmetric);
   suite_add_tcase(suite, tcase);
   return suite_run(suite);
 }
