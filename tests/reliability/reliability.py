@@ -154,9 +154,10 @@ class Daemon:
                     return db.execute(statement, values).fetchall()
                 finally:
                     db.close()
-            except sqlite3.OperationalError:
+            except sqlite3.OperationalError as reason:
+                trouble = reason
                 time.sleep(0.05)  # the daemon was killed in the midst of a checkpoint
-        raise RuntimeError("the database cannot be read")
+        raise RuntimeError(f"the database cannot be read: {trouble}")
 
     def one(self, statement, *values):
         return self.sql(statement, *values)[0][0]
