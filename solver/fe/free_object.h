@@ -3,10 +3,14 @@
  * Small motions (a, w) of the object, x -> x + a + w x (x - place), are eliminated from every
  * linear system of the body: with the body's K du + B dm = -r and the object's G dm - C du = -g,
  * where C = d (force and moment on the object) / d u, the factor of K gives X = K^-1 B in six more
- * solves, and (G + C X) dm = -g - C K^-1 (-r) (-1),   du = -K^-1 r - X dm. At rest g says that the
- * contact carries the weight; in a step in time the momentum and the moment of momentum of the
- * object change besides, by the method of dynamics.h, for the rotation in the object's own frame
- * with the rotation vector of the step (Simo, Vu-Quoc 1988). */
+ * solves, and
+ *   (G + C X) dm = -g - C K^-1 r,   du = -K^-1 r - X dm.
+ * At rest g says that the contact carries the weight; in a step in time the momentum and the moment
+ * of momentum of the object change besides, by the method of dynamics.h, for the rotation in the
+ * object's own frame with the rotation vector of the step (Simo, Vu-Quoc 1988).
+ *
+ * An equilibrium is found from a pose in which the object overlaps the body a little, so that the
+ * contact bears it; an object in the air has none, and falls: dynamics_carry follows it to rest. */
 #ifndef PNEULAB_FE_FREE_OBJECT_H
 #define PNEULAB_FE_FREE_OBJECT_H
 
