@@ -33,6 +33,7 @@ enum status draft_append(struct draft *draft, struct draft *from, struct error *
   draft->count = count;
   draft->mean_s += from->mean_s;
   draft->time_s += from->time_s;
+  draft->rest_s = draft->rest_s > from->rest_s ? draft->rest_s : from->rest_s;
   from->count = 0;
   draft_destroy(from);
   return STATUS_OK;

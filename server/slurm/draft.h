@@ -25,7 +25,8 @@ struct draft {
   char partition[CLUSTER_WORD_SIZE]; /* of a label, or "" */
   int priority;
   double mean_s; /* what it is believed to take */
-  double time_s; /* its time limit */
+  double time_s; /* limits of those of its jobs that have one of their own, together */
+  double rest_s; /* limit of those that have none: it counts once; 0 without such */
 };
 
 void draft_destroy(struct draft *draft);

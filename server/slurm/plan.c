@@ -79,7 +79,11 @@ static void draft_take_member(struct slurm *slurm, struct draft *draft, struct c
   snprintf(member->kind, sizeof member->kind, "%s", job.kind);
   claim->document = NULL;
   draft->count++;
-  draft->time_s += member->time_limit_s;
+  if (claim->timeout_s > 0) {
+    draft->time_s += member->time_limit_s;
+  } else {
+    draft->rest_s = member->time_limit_s;
+  }
   draft->mean_s += kind ? kind->mean_s : unknown_s;
 }
 
@@ -139,20 +143,26 @@ static void plan_add(struct plan *plan, struct draft *draft) {
   plan->tasks++;
 }
 
-/* Puts claimed jobs back that cannot be handed over. */
-static void draft_put_back(struct slurm *slurm, struct draft *draft, const struct error *why) {
+/* Puts a claimed job back that cannot be handed over. */
+static void put_back(struct slurm *slurm, int64_t job_id, int64_t attempt, const char *kind,
+                     const char *why) {
+  struct outcome outcome, *outcomes = &outcome;
+  struct ending_job job = {.start_ms = clock_monotonic_ms()};
+  const struct ending_job *jobs = &job;
+  char directory[ENDING_DIRECTORY_SIZE];
+  snprintf(job.kind, sizeof job.kind, "%s", kind);
+  outcome_make(&outcome, ATTEMPT_REQUEUED, "not_submitted", "%s", why);
+  ending_fill(&slurm->ending, job_id, attempt, slurm->troubles, directory, &outcome);
+  ending_store(&slurm->ending, &jobs, &outcomes, 1);
+  outcome_clear(&outcome);
+}
+
+static void draft_put_back(struct slurm *slurm, const struct draft *draft,
+                           const struct error *why) {
   log_event(LOG_LEVEL_ERROR, why->message, LOG_NUMBER("jobs", draft->count));
   for (size_t k = 0; k < draft->count; k++) {
-    struct outcome outcome, *outcomes = &outcome;
-    struct ending_job job = {.start_ms = clock_monotonic_ms()};
-    const struct ending_job *jobs = &job;
-    char directory[ENDING_DIRECTORY_SIZE];
-    snprintf(job.kind, sizeof job.kind, "%s", draft->member[k].kind);
-    outcome_make(&outcome, ATTEMPT_REQUEUED, "not_submitted", "%s", why->message);
-    ending_fill(&slurm->ending, draft->member[k].job_id, draft->member[k].attempt, slurm->troubles,
-                directory, &outcome);
-    ending_store(&slurm->ending, &jobs, &outcomes, 1);
-    outcome_clear(&outcome);
+    const struct draft_member *member = &draft->member[k];
+    put_back(slurm, member->job_id, member->attempt, member->kind, why->message);
   }
 }
 
@@ -172,6 +182,12 @@ static void claim_some(struct plan *plan, size_t tasks) {
       claimed = false;
     } else if (claimed) {
       struct draft *draft = draft_create(slurm, &claim);
+      for (const struct claim *at = &claim; at && !draft; at = at->next) {
+        if (at->job_id != 0) {
+          put_back(slurm, at->job_id, at->attempt, "", "There is no memory for it.");
+        }
+      }
+      claimed = draft != NULL;
       if (draft) {
         plan_add(plan, draft);
       }
@@ -275,7 +291,7 @@ static void batch_make(struct slurm *slurm, struct draft *drafts, size_t count) 
     memcpy(batch->partition, drafts->partition, sizeof batch->partition);
   }
   for (const struct draft *draft = drafts; draft && status == STATUS_OK; draft = draft->next) {
-    batch->time_s = fmax(batch->time_s, draft->time_s + start_up_s);
+    batch->time_s = fmax(batch->time_s, draft->time_s + draft->rest_s + start_up_s);
     status = task_fill(&batch->task[index++], draft, &error);
   }
   if (status == STATUS_OK) {
