@@ -70,7 +70,7 @@ enum status case_friction_block(struct verify_run *run, struct error *error) {
     for (int k = 0; status == STATUS_OK && k < COEFFICIENTS; k++) {
       status = block_open(&scene, n, friction[k], run, error);
       if (status == STATUS_OK) {
-        double way = 40 * friction[k] * press;
+        double way = 80 * friction[k] * press;
         status = slider_move(&scene.slider, (double[3]){way, 0, 0}, none, 4, error);
       }
       const struct obstacle_state *now = &scene.slider.now;
