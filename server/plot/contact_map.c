@@ -15,6 +15,9 @@ enum side { SIDE_RIGHT, SIDE_BOTTOM, SIDE_LEFT, SIDE_TOP, SIDES, SIDE_NONE = SID
 /* A face belongs to a side when its normal is within 26 degrees of that of the side. */
 static const double ALIGNED = 0.9;
 
+/* Less than this part of the scale is no contact that a side would have to be shown for. */
+static const double TOUCHED = 0.01;
+
 struct strip {
   const char *name;
   bool shown;
@@ -101,7 +104,7 @@ static void find_strips(struct map *map) {
       double at = across_of(map->side[i], body->rest[p]);
       strip->low = fmin(strip->low, at);
       strip->high = fmax(strip->high, at);
-      strip->shown = strip->shown || contact[p] > 1e-3;
+      strip->shown = strip->shown || contact[p] > TOUCHED * map->scale.top;
       map->from = fmin(map->from, body->rest[p].x);
       map->to = fmax(map->to, body->rest[p].x);
     }
