@@ -15,7 +15,8 @@
 #include "solver/job/spec.h"
 #include "tools/reproduction.h"
 
-static const char *const folders[] = {"beast", "multicurvature", "ptba", "tapered", "material"};
+static const char *const folders[] = {"beast", "multicurvature", "ptba",
+                                      "grasp", "tapered",        "material"};
 
 enum { FOLDERS = sizeof folders / sizeof *folders, JOB_BYTES_MAX = 1 << 24, PROCESSES_MAX = 64 };
 
