@@ -169,18 +169,18 @@ static enum status read_blocked(const struct reader *reader, const json_t *value
   if (status != STATUS_OK) {
     return status;
   }
-  double back[3] = {-to[0], -to[1], -to[2]};
+  double back[3] = {-to[0], -to[1], -to[2]}, rotation[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  turn_to(back, rotation);
   spec->blocked = true;
   spec->blocked_distance = reader_member(reader, value, "distance", "mm", 0.0);
   spec->object = (struct grasp_object){
       .shape.form = GRASP_PLANE,
-      .rotation = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
       .friction = json_number_value(json_object_get(value, "friction")),
   };
   for (int i = 0; i < 3; i++) {
     spec->object.place[i] = spec->blocked_distance * to[i];
   }
-  turn_to(back, spec->object.rotation);
+  memcpy(spec->object.rotation, rotation, sizeof rotation);
   return STATUS_OK;
 }
 
