@@ -28,6 +28,7 @@ struct continuation_options continuation_defaults(double size) {
                                        .step_min = 1e-8 * size,
                                        .step_max = 0.05 * size,
                                        .tolerance = 1e-8 * size,
+                                       .swing = 1,
                                        .angle_max = 0.5,
                                        .increment_max = 0.2 * size,
                                        .event_tolerance = 1e-4,

@@ -60,8 +60,10 @@ struct continuation_options {
   double step_max;
   double lambda_scale;    /* of the metric; 0: cylindrical */
   double lambda_step_max; /* largest |dlambda| of a predictor; 0: none */
-  double
-      tolerance; /* metric of the last correction; a hundred times that where corrections swing */
+  double tolerance;       /* metric of the last correction */
+  double swing;           /* corrections that swing to and fro within that many tolerances are let
+                           * pass, where a point of contact has two partners to choose from, between
+                           * which the potential has a step; 1: none */
   double angle_max;       /* rad, largest angle between the tangents of successive states; larger
                            * ones are taken for a jump to another branch */
   double increment_max;   /* largest |dx_i| of one correction; 0: none */

@@ -42,10 +42,6 @@ bool continuation_retry(enum status status) {
   return status == STATUS_DIVERGED || status == STATUS_INVERTED;
 }
 
-/* Corrections that swing to and fro within that many tolerances are let pass: a point of contact
- * has two partners to choose from, between which the potential has a step. */
-static const double swing = 100;
-
 /* ---- at a fixed lambda ------------------------------------------------------------------- */
 
 /* Damped Newton's method with the natural monotonicity test of Deuflhard (2004): a step is taken
@@ -94,6 +90,7 @@ static enum status damp(struct newton *n, double length, double *next, struct er
     }
     s->solve(s->context, n->residual, n->next);
     *next = metric(s, n->next);
+    double swing = n->options->swing;
     double settled = (length <= swing * n->options->tolerance ? swing : 1) * n->options->tolerance;
     if (*next <= (1 - 0.25 * damping) * length || *next <= settled) {
       memcpy(n->x, n->trial, sizeof *n->x * (size_t)s->size);
@@ -122,6 +119,7 @@ static enum status iterate(struct newton *n, struct error *error) {
       fprintf(stderr, "  newton %d: step %.3g next %.3g damping %.3g negative %d\n", k, length,
               next, n->damping, n->negative);
     }
+    double swing = n->options->swing;
     bool swings = length <= swing * n->options->tolerance && next > 0.5 * length;
     bool small = next <= (swings ? swing : 1) * n->options->tolerance;
     if (status == STATUS_OK && n->damping == 1 && small) {
@@ -249,7 +247,7 @@ enum status path_correct(struct path_work *work, const struct path_state *from, 
       path_tangent(work, from, to);
       return STATUS_OK;
     }
-    if (k > 1 && length <= swing * o->tolerance && length > 0.5 * before) {
+    if (k > 1 && length <= o->swing * o->tolerance && length > 0.5 * before) {
       path_tangent(work, from, to);
       return STATUS_OK;
     }

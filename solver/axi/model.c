@@ -369,6 +369,7 @@ void axi_element_displacements(const struct axi_mesh *mesh, int element, const d
 
 struct continuation_options axi_defaults(const struct axi_model *model) {
   struct continuation_options options = continuation_defaults(model->length);
+  options.swing = model->contact ? 100 : 1;
   options.step_max = 0.02 * model->length;
   return options;
 }
