@@ -80,10 +80,10 @@ stand_in sinfo <<< 'echo 0/4/0/4'
 export PATH=$FAKE/bin:$PATH
 
 # ---- jobs -------------------------------------------------------------------------------------
-# Those with a name wait for a file go-NAME, or for being cancelled.
+# Those with a name wait for a file go-NAME, for being cancelled, or for the end of the test.
 solver 'name=$(jq -r ".name // empty" "$job")
 trap "asked=1" USR1
-while [ -n "$name" ] && [ ! -e "$WORK/go-$name" ]; do
+while [ -n "$name" ] && [ -d "$WORK" ] && [ ! -e "$WORK/go-$name" ]; do
   [ -n "$asked" ] && [ -e "${job%/*}/cancel" ] && exit 5
   sleep 0.05 & wait $!
 done
