@@ -4,7 +4,7 @@
 #include <string.h>
 #include "solver/fe/contact_internal.h"
 #include "solver/fe/contact_projection.h"
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 
 /* How far beyond its edge (parent coordinate 1) a master face is continued: far for the two sides
  * of a gap, which are flat there, hardly for faces that have met by bending. */

@@ -2,7 +2,7 @@
 
 #include <math.h>
 #include <string.h>
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 
 static void evaluate(double master[QUAD9_NODES][3], const double slave[3], const double xi[2],
                      struct projection *p) {

@@ -5,7 +5,7 @@
 #include "solver/fe/box_tree.h"
 #include "solver/fe/contact_internal.h"
 #include "solver/fe/contact_projection.h"
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 
 enum { CANDIDATES_MAX = 256 };
 

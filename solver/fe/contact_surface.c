@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "solver/fe/contact_internal.h"
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 
 /* Reference areas of the 9 points of every face, from `point` on. */
 static void fill_points(const struct contact *contact, struct contact_point *point) {

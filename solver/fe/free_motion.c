@@ -1,7 +1,7 @@
 /* A rigid object in a step in time. */
 #include <string.h>
 #include "solver/fe/free_object.h"
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 
 /* Where the step has brought the object: end of the step by Newmark's formulas. */
 struct end {

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 
 /* Pivots of the six by six system below this part of the largest one belong to motions that nothing
  * resists: they are left out if nothing drives them either, to this part of the forces. */

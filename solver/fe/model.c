@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "solver/fe/obstacle_internal.h"
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 
 static enum status fill_geometry(struct fe_model *m, struct error *error) {
   const struct mesh *mesh = m->mesh;

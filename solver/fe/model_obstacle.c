@@ -4,7 +4,7 @@
 #include "solver/fe/box_tree.h"
 #include "solver/fe/model_internal.h"
 #include "solver/fe/obstacle_internal.h"
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 
 void obstacle_face_positions(const struct fe_model *m, const double *u, int f,
                              int nodes[QUAD9_NODES], double x[QUAD9_NODES][3]) {

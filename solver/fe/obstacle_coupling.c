@@ -3,7 +3,7 @@
  *   dr = K (dx - a - w x s) + w x r,  d(s x r) = s x dr + (dx - a) x r. */
 #include <string.h>
 #include "solver/fe/obstacle_internal.h"
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 
 /* Of one point: column j of the derivatives of r and of s x r by its own place (by_place) and by
  * the six motions. */

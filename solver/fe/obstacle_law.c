@@ -4,7 +4,7 @@
 #include <string.h>
 #include "solver/fe/contact_internal.h"
 #include "solver/fe/obstacle_internal.h"
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 
 void obstacle_point_clear(struct obstacle_point *point) {
   static const double zero[3] = {0};

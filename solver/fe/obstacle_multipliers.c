@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 #include "solver/fe/obstacle_internal.h"
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 
 size_t obstacles_memory_count(const struct fe_model *m) {
   return (size_t)m->obstacle_count * QUAD9_POINTS * (size_t)m->contact.face_count;

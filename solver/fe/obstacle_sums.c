@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "solver/fe/obstacle_internal.h"
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 
 static void add_point(const struct obstacle *o, const struct obstacle_point *point,
                       struct obstacle_state *s) {

@@ -1,7 +1,7 @@
 #include "solver/fe/pressure.h"
 
 #include <string.h>
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 
 /* Position and tangents at Gauss point q. */
 static void face_point(const struct quad9_tables *tables, double x[QUAD9_NODES][3], int q,

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "solver/fe/hyperelastic.h"
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 
 /* Rigid motion of one section under an increment. */
 struct section {

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "solver/fe/retraction.h"
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 
 enum status section_form_create(const struct mesh *mesh, struct section_form *form) {
   size_t sections = (size_t)mesh->section_count + 1, nodes = (size_t)mesh->node_count + 1;

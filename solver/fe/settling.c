@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "solver/fe/obstacle_internal.h"
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 
 enum { WINDOW = 5 };
 /* An update after which the difference has grown by this much starts anew. */

@@ -2,7 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 #include "solver/post/shape.h"
 #include "solver/post/suction.h"
 

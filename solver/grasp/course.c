@@ -2,7 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 #include "solver/job/grasp_shape.h"
 
 enum {

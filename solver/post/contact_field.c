@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 
 /* Sums of weight times pressure, and of weights. */
 struct sums {

@@ -1,6 +1,6 @@
 #include "solver/post/sample.h"
 
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 
 static void measure_contact(const struct fe_model *model, struct sample *sample) {
   struct contact_summary c = contact_summarise(&model->contact);

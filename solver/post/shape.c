@@ -2,7 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 
 /* Angle of a direction in the x-z plane, positive towards -z. */
 static double direction(const double a[3], const double b[3]) {

@@ -1,7 +1,7 @@
 #include "solver/post/spatial.h"
 
 #include "solver/fe/retraction.h"
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 
 /* Twist about the first axis of the swing-twist decomposition of a rotation: 2 atan2(q1, q0) of its
  * quaternion q, between -pi and pi. From the matrix, (q0, q1) is proportional to the larger of two

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 #include "solver/mesh/grid.h"
 
 /* Number of the node at x, among the nodes before `limit` or a new one. */

@@ -1,7 +1,7 @@
 /* Friction between a body and a rigid object that moves: a block on a plane, the work in a closed
  * cycle, and a belt around a drum. */
 #include <math.h>
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 #include "solver/verify/cases.h"
 #include "solver/verify/slider.h"
 

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 #include "solver/verify/cases.h"
 #include "solver/verify/materials.h"
 

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include "solver/fe/box_tree.h"
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 
 static void node_position(const struct mesh *mesh, const double *u, int node, double x[3]) {
   for (int i = 0; i < 3; i++) {

@@ -1,7 +1,7 @@
 /* Contact between two faces: tangent against differences, balance of forces. */
 #include <check.h>
 #include <math.h>
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 #include "solver/verify/contact_pair.h"
 #include "tests/physics/report.h"
 #include "tests/unit/suite.h"

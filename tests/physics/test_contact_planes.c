@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 #include "solver/verify/body.h"
 #include "solver/verify/report.h"
 #include "tests/physics/forces.h"

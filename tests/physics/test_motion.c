@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "solver/fe/dynamics_carry.h"
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 #include "tests/physics/moving.h"
 #include "tests/physics/report.h"
 #include "tests/unit/suite.h"

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 #include "solver/job/parameter.h"
 #include "solver/mesh/actuator.h"
 #include "solver/mesh/grid.h"

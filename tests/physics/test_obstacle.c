@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "solver/fe/obstacle_internal.h"
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 #include "solver/verify/body.h"
 #include "solver/verify/report.h"
 #include "tests/physics/report.h"

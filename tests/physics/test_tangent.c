@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 #include "solver/fe/pressure.h"
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 #include "solver/verify/report.h"
 #include "tests/physics/report.h"
 #include "tests/unit/suite.h"

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 #include "solver/fe/section_form.h"
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 #include "solver/fe/warm.h"
 #include "tests/physics/pneunet_case.h"
 #include "tests/physics/report.h"

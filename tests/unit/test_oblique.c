@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "solver/fe/model.h"
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 #include "solver/mesh/actuator.h"
 #include "solver/mesh/oblique.h"
 #include "tests/physics/oblique_case.h"

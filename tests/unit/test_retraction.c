@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "solver/fe/retraction.h"
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 #include "solver/verify/body.h"
 #include "tests/physics/pneunet_case.h"
 #include "tests/unit/suite.h"

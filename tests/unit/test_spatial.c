@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "solver/fe/vec3.h"
+#include "solver/base/vec3.h"
 #include "solver/mesh/pneunet.h"
 #include "solver/post/spatial.h"
 #include "tests/physics/pneunet_case.h"
