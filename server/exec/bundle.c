@@ -1,6 +1,5 @@
 #include "server/exec/bundle.h"
 
-#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,10 +9,11 @@
 #include "server/base/clock.h"
 #include "server/base/file.h"
 #include "server/base/log.h"
+#include "server/exec/members.h"
 #include "server/exec/run_internal.h"
 #include "solver/job/json.h"
 
-enum { LINES_BYTES = 65536, NOBODY = BUNDLE_MEMBERS_MAX };
+enum { NOBODY = BUNDLE_MEMBERS_MAX };
 
 /* One member and what is known of it. */
 struct member {
@@ -99,21 +99,12 @@ static void begin(struct bundle *b, size_t index) {
   pace_start(&b->reader.pace, now);
 }
 
-static double number_of(const json_t *event, const char *name) {
-  double value = json_number_value(json_object_get(event, name));
-  return isfinite(value) && value > 0 ? value : 0;
-}
-
-static void done(struct bundle *b, size_t index, const json_t *event) {
-  const json_t *code = json_object_get(event, "exit");
-  struct process_end end = {.exit_code = json_is_integer(code) ? (int)json_integer_value(code) : -1,
-                            .cpu_s = number_of(event, "cpu_s"),
-                            .peak_memory_MB = number_of(event, "peak_memory_MB")};
+static void done(struct bundle *b, size_t index, const struct process_end *end) {
   b->any = true;
   b->running = NOBODY;
   b->watch.timeout_at_ms = clock_monotonic_ms() + (int64_t)(1000 * b->member[index].time_limit_s);
   if (!b->member[index].settled) {
-    judge(b, index, &end);
+    judge(b, index, end);
   }
   if (index == 0 && b->before[0]) {
     unlink(b->before);
@@ -121,34 +112,13 @@ static void done(struct bundle *b, size_t index, const json_t *event) {
 }
 
 /* Only the member whose turn it is can begin, and only one that has begun can be done. */
-static void take_line(struct bundle *b, const char *line, size_t size) {
-  json_t *event = json_read(line, size, JSON_REJECT_DUPLICATES, NULL);
-  const char *word = json_string_value(json_object_get(event, "event"));
-  json_int_t index = json_integer_value(json_object_get(event, "member"));
-  bool ours = word && index >= 0 && index < (json_int_t)b->count;
-  if (ours && strcmp(word, "begun") == 0 && b->running == NOBODY) {
-    begin(b, (size_t)index);
-  } else if (ours && strcmp(word, "done") == 0 && b->running == (size_t)index) {
-    done(b, (size_t)index, event);
+static void take_event(void *context, const struct member_event *event) {
+  struct bundle *b = context;
+  if (!event->done && b->running == NOBODY) {
+    begin(b, event->member);
+  } else if (event->done && b->running == event->member) {
+    done(b, event->member, &event->end);
   }
-  json_decref(event);
-}
-
-static void take_lines(struct bundle *b) {
-  static const int flags = O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
-  char buffer[LINES_BYTES];
-  int fd = open(b->lines, flags);
-  ssize_t got = fd >= 0 ? pread(fd, buffer, sizeof buffer, b->offset) : -1;
-  if (fd >= 0) {
-    close(fd);
-  }
-  const char *start = buffer, *newline;
-  while (got > 0 && (newline = memchr(start, '\n', (size_t)(buffer + got - start)))) {
-    take_line(b, start, (size_t)(newline - start));
-    start = newline + 1;
-  }
-  bool endless = start == buffer && got == (ssize_t)sizeof buffer;
-  b->offset += endless ? got : start - buffer;
 }
 
 /* ---- the watch ---------------------------------------------------------------------------- */
@@ -181,7 +151,7 @@ static void leave_out(struct bundle *b) {
 static void look(struct bundle *b) {
   const struct bundle_hooks *hooks = b->hooks;
   const struct run_hooks watched = {.context = b, .stop_wanted = stop_wanted};
-  take_lines(b);
+  members_follow(b->lines, &b->offset, b->count, take_event, b);
   leave_out(b);
   tell_ends(b);
   enum stop_cause before = b->watch.cause;
@@ -209,7 +179,7 @@ static void look(struct bundle *b) {
 /* Whatever has not ended by itself ends with the process. */
 static void settle_rest(struct bundle *b, const struct process_end *end) {
   bool charged = false;
-  take_lines(b);
+  members_follow(b->lines, &b->offset, b->count, take_event, b);
   for (size_t k = 0; k < b->count; k++) {
     struct outcome outcome;
     if (b->member[k].settled) {

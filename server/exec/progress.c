@@ -1,12 +1,11 @@
 #include "server/exec/progress.h"
 
-#include <fcntl.h>
 #include <jansson.h>
 #include <math.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "server/base/clock.h"
+#include "server/base/follow.h"
 #include "solver/job/json.h"
 
 enum { PACE_FIRST_MS = 300 }; /* earlier a rate means nothing */
@@ -55,25 +54,15 @@ static bool progress_differs(const struct progress *a, const struct progress *b)
          a->iteration != b->iteration;
 }
 
+static void take_line(void *context, const char *line, size_t size) {
+  progress_take_line(line, size, context);
+}
+
 bool progress_poll(struct progress_reader *reader, struct progress *progress) {
-  char buffer[65536];
-  int fd = open(reader->path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
-  if (fd < 0) {
-    return false;
-  }
-  ssize_t got = pread(fd, buffer, sizeof buffer, reader->offset);
-  close(fd);
-  if (got <= 0) {
-    return false;
-  }
-  const char *start = buffer, *end = buffer + got, *newline;
   struct progress before = *progress;
-  while ((newline = memchr(start, '\n', (size_t)(end - start)))) {
-    progress_take_line(start, (size_t)(newline - start), progress);
-    start = newline + 1;
+  if (!follow_lines(reader->path, &reader->offset, take_line, progress)) {
+    return false;
   }
-  bool line_too_long = start == buffer && (size_t)got == sizeof buffer;
-  reader->offset += line_too_long ? got : start - buffer;
   int64_t now = clock_monotonic_ms();
   if (reader->pace.count == 0 || progress->fraction < before.fraction) { /* another stage */
     pace_start(&reader->pace, now);

@@ -1,5 +1,4 @@
 /* One task: what it writes, and what that means for its members. */
-#include <fcntl.h>
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
@@ -9,10 +8,10 @@
 
 #include "server/base/clock.h"
 #include "server/base/log.h"
+#include "server/exec/members.h"
 #include "server/slurm/slurm_internal.h"
-#include "solver/job/json.h"
 
-enum { LINES_BYTES = 65536, LOOKS_MAX = 64 };
+enum { LOOKS_MAX = 64 };
 
 bool member_paths(const struct slurm *slurm, const struct slurm_member *member,
                   struct run_paths *paths) {
@@ -107,70 +106,40 @@ static void begin(struct slurm_task *task, int index) {
   member->job.start_ms = now;
 }
 
-static double number_of(const json_t *event, const char *name) {
-  double value = json_number_value(json_object_get(event, name));
-  return isfinite(value) && value > 0 ? value : 0;
-}
-
-static void done(struct slurm_task *task, int index, const json_t *event) {
+static void done(struct slurm_task *task, int index, const struct process_end *end) {
   struct slurm *slurm = task->batch->slurm;
-  const json_t *code = json_object_get(event, "exit");
-  struct process_end end = {.exit_code = json_is_integer(code) ? (int)json_integer_value(code) : -1,
-                            .cpu_s = number_of(event, "cpu_s"),
-                            .peak_memory_MB = number_of(event, "peak_memory_MB")};
   pthread_mutex_lock(&slurm->mutex);
   task->follow->running = NO_MEMBER;
   bool cancel = task->member[index].cancel && task->member[index].told;
   pthread_mutex_unlock(&slurm->mutex);
   task->follow->any = true;
-  int64_t start_ms = clock_monotonic_ms() - (int64_t)(1000 * end.cpu_s); /* it may have begun and */
-  if (task->member[index].job.start_ms > start_ms) { /* ended between two looks */
+  int64_t start_ms =
+      clock_monotonic_ms() - (int64_t)(1000 * end->cpu_s); /* it may have begun and */
+  if (task->member[index].job.start_ms > start_ms) {       /* ended between two looks */
     task->member[index].job.start_ms = start_ms;
   }
   if (!task->member[index].settled) {
-    judge(task, (size_t)index, &end, cancel ? STOP_CANCEL : STOP_NONE);
+    judge(task, (size_t)index, end, cancel ? STOP_CANCEL : STOP_NONE);
   }
 }
 
 /* Only the member whose turn it is can begin, and only one that has begun can be done. */
-static void take_line(struct slurm_task *task, const char *line, size_t size) {
-  json_t *event = json_read(line, size, JSON_REJECT_DUPLICATES, NULL);
-  const char *word = json_string_value(json_object_get(event, "event"));
-  json_int_t index = json_integer_value(json_object_get(event, "member"));
-  bool ours = word && index >= 0 && index < (json_int_t)task->count;
-  if (ours && strcmp(word, "begun") == 0 && task->follow->running == NO_MEMBER) {
-    begin(task, (int)index);
-  } else if (ours && strcmp(word, "done") == 0 && task->follow->running == (int)index) {
-    done(task, (int)index, event);
+static void take_event(void *context, const struct member_event *event) {
+  struct slurm_task *task = context;
+  int index = (int)event->member;
+  if (!event->done && task->follow->running == NO_MEMBER) {
+    begin(task, index);
+  } else if (event->done && task->follow->running == index) {
+    done(task, index, &event->end);
   }
-  json_decref(event);
-}
-
-/* Reads a piece of the lines; false when nothing whole was added. */
-static bool take_lines(struct slurm_task *task, const char *path) {
-  char buffer[LINES_BYTES];
-  int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
-  ssize_t got = fd >= 0 ? pread(fd, buffer, sizeof buffer, task->follow->offset) : -1;
-  if (fd >= 0) {
-    close(fd);
-  }
-  const char *start = buffer, *newline;
-  while (got > 0 && (newline = memchr(start, '\n', (size_t)(buffer + got - start)))) {
-    take_line(task, start, (size_t)(newline - start));
-    start = newline + 1;
-  }
-  bool endless = start == buffer && got == (ssize_t)sizeof buffer;
-  off_t taken = endless ? got : start - buffer;
-  task->follow->offset += taken;
-  return taken > 0;
 }
 
 void task_read(struct slurm_task *task) {
   char path[PATH_MAX], name[64];
   snprintf(name, sizeof name, "%u/members.jsonl", task->index);
-  if (run_path(path, task->batch->folder, name)) {
-    for (int i = 0; i < LOOKS_MAX && take_lines(task, path); i++) {
-    }
+  bool more = run_path(path, task->batch->folder, name);
+  for (int i = 0; more && i < LOOKS_MAX; i++) {
+    more = members_follow(path, &task->follow->offset, task->count, take_event, task);
   }
 }
 
