@@ -11,21 +11,12 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include "server/launch/environment.h"
 #include "server/launch/launch.h"
 
 extern char **environ;
 
-static const char *const kept_variables[] = {"PATH",
-                                             "LANG",
-                                             "LC_ALL",
-                                             "TZ",
-                                             "OPENBLAS_NUM_THREADS",
-                                             "OPENBLAS_CORETYPE",
-                                             "UDUNITS2_XML_PATH",
-                                             "ASAN_OPTIONS",
-                                             "LSAN_OPTIONS",
-                                             "UBSAN_OPTIONS",
-                                             "TSAN_OPTIONS"};
+static const char *const kept_variables[] = {WORKER_VARIABLES, "LC_ALL"};
 
 static void limit_set(int resource, uint64_t soft, uint64_t hard) {
   if (soft != 0) {

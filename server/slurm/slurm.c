@@ -8,6 +8,7 @@
 
 #include "server/base/clock.h"
 #include "server/base/log.h"
+#include "server/launch/environment.h"
 #include "server/slurm/index.h"
 #include "server/slurm/metrics.h"
 #include "server/slurm/slurm_internal.h"
@@ -303,19 +304,7 @@ static void engine_destroy(void *engine) {
 
 /* What the programs of the cluster, and thereby tasks, have of the daemon's environment. */
 static enum status environment_make(struct slurm *slurm, struct error *error) {
-  static const char *const kept[] = {"PATH",
-                                     "HOME",
-                                     "USER",
-                                     "LOGNAME",
-                                     "SLURM_CONF",
-                                     "LANG",
-                                     "TZ",
-                                     "OPENBLAS_CORETYPE",
-                                     "UDUNITS2_XML_PATH",
-                                     "ASAN_OPTIONS",
-                                     "LSAN_OPTIONS",
-                                     "UBSAN_OPTIONS",
-                                     "TSAN_OPTIONS"};
+  static const char *const kept[] = {WORKER_VARIABLES, "HOME", "USER", "LOGNAME", "SLURM_CONF"};
   enum { KEPT = sizeof kept / sizeof *kept };
   size_t count = 0;
   slurm->environment = calloc(KEPT + 3, sizeof *slurm->environment);
