@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <zlib.h>
 
+#include "solver/base/base64.h"
+
 const int *vtu_order_hex27(void) {
   /* Corners of z- and z+, edges of z-, of z+, upright; faces x- x+ y- y+ z- z+; centre. */
   static const int order[27] = {0,  18, 24, 6,  2,  20, 26, 8,  9,  21, 15, 3,  11, 23,
@@ -22,16 +24,14 @@ static const char *byte_order(void) {
   return *(const unsigned char *)&one ? "LittleEndian" : "BigEndian";
 }
 
-static void write_base64(FILE *file, const unsigned char *data, size_t size) {
-  static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  for (size_t i = 0; i < size; i += 3) {
-    size_t left = size - i;
-    uint32_t bits = (uint32_t)data[i] << 16 | (left > 1 ? (uint32_t)data[i + 1] << 8 : 0) |
-                    (left > 2 ? data[i + 2] : 0);
-    char text[4] = {digit[bits >> 18], digit[bits >> 12 & 63],
-                    left > 1 ? digit[bits >> 6 & 63] : '=', left > 2 ? digit[bits & 63] : '='};
-    fwrite(text, 1, sizeof text, file);
+static enum status write_base64(FILE *file, const void *data, size_t size) {
+  size_t length;
+  char *text = base64_encode(data, size, &length);
+  if (text) {
+    fwrite(text, 1, length, file);
   }
+  free(text);
+  return text ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
 /* Compresses into *packed, which the caller frees; returns the size, or 0 when memory runs out.
@@ -69,10 +69,12 @@ static enum status write_block(FILE *file, const void *data, size_t size) {
     return STATUS_NO_MEMORY;
   }
   uint64_t header[4] = {1, size, 0, compressed};
-  write_base64(file, (const unsigned char *)header, sizeof header);
-  write_base64(file, packed, compressed);
+  enum status status = write_base64(file, header, sizeof header);
+  if (status == STATUS_OK) {
+    status = write_base64(file, packed, compressed);
+  }
   free(packed);
-  return STATUS_OK;
+  return status;
 }
 
 static enum status write_array(FILE *file, const char *type, const char *name, int components,
