@@ -10,6 +10,12 @@
 enum { WINDOW = 5 };
 /* An update after which the difference has grown by this much starts anew. */
 static const double growth = 2;
+/* Of the normal equations of the differences, by their trace. */
+static const double regularization = 1e-12;
+
+/* LAPACK, as the BLAS library brings it: Cholesky factors and the solution. */
+void dposv_(const char *half, const int *n, const int *columns, double *a, const int *lead,
+            double *b, const int *lead_b, int *info);
 
 /* Multipliers z, their change f = G(z) - z, and the nodal forces of the change. */
 struct settling {
@@ -121,40 +127,6 @@ double settling_measure(struct settling *s, const struct fe_model *m) {
   return left * sum / (size + 1e-2 * material_shear_modulus(&m->material) * wall * wall);
 }
 
-/* Solves the normal equations a gamma = b of order n by Cholesky's method, slightly regularised.
- * False when they are singular. */
-static bool solve_small(int n, double a[WINDOW][WINDOW], double b[WINDOW]) {
-  double trace = 0;
-  for (int i = 0; i < n; i++) {
-    trace += a[i][i];
-  }
-  for (int i = 0; i < n; i++) {
-    a[i][i] += 1e-12 * trace;
-    for (int j = 0; j <= i; j++) {
-      for (int k = 0; k < j; k++) {
-        a[i][j] -= a[i][k] * a[j][k];
-      }
-      if (i == j && !(a[i][i] > 0)) {
-        return false;
-      }
-      a[i][j] = i == j ? sqrt(a[i][i]) : a[i][j] / a[j][j];
-    }
-  }
-  for (int i = 0; i < n; i++) {
-    for (int k = 0; k < i; k++) {
-      b[i] -= a[i][k] * b[k];
-    }
-    b[i] /= a[i][i];
-  }
-  for (int i = n - 1; i >= 0; i--) {
-    for (int k = i + 1; k < n; k++) {
-      b[i] -= a[k][i] * b[k];
-    }
-    b[i] /= a[i][i];
-  }
-  return true;
-}
-
 /* Takes the differences to the last update into the window. */
 static void remember(struct settling *s) {
   double *step = s->step[s->next], *difference = s->difference[s->next];
@@ -170,14 +142,21 @@ static void remember(struct settling *s) {
 
 /* f <- f - sum of gamma_j step_j, with the gamma that make the nodal forces smallest. */
 static void accelerate(struct settling *s) {
-  double a[WINDOW][WINDOW], gamma[WINDOW];
+  static const int one = 1, lead = WINDOW;
+  double a[WINDOW][WINDOW], gamma[WINDOW], trace = 0;
+  int info = 0;
   for (int i = 0; i < s->columns; i++) {
     for (int j = 0; j < s->columns; j++) {
       a[i][j] = cblas_ddot(s->forces, s->difference[i], 1, s->difference[j], 1);
     }
     gamma[i] = cblas_ddot(s->forces, s->difference[i], 1, s->force, 1);
+    trace += a[i][i];
   }
-  if (!solve_small(s->columns, a, gamma)) {
+  for (int i = 0; i < s->columns; i++) {
+    a[i][i] += regularization * trace;
+  }
+  dposv_("U", &s->columns, &one, a[0], &lead, gamma, &lead, &info);
+  if (info != 0) {
     settling_restart(s);
     return;
   }
