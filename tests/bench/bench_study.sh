@@ -29,6 +29,7 @@ for _ in $(seq 200); do
   [ -n "$url" ] && break
   sleep 0.05
 done
+[ -n "$url" ] || { cat "$work/stderr"; exit 1; }
 start=$(date +%s.%N)
 id=$(curl -sS --fail-with-body --data-binary @"$work/study.json" "$url/api/v1/jobs" | jq .id)
 state=queued
