@@ -22,7 +22,7 @@ void cloud_dot(struct cloud *cloud, double x, double y, double radius, struct rg
 struct cloud_line {
   float from, to; /* y in pixels at the two axes */
   float r, g, b;
-  float weight; /* counts as so many lines; 1 usually */
+  float weight; /* counts as so many lines, whole; 1 usually; together under 8 million */
 };
 
 /* Adds lines from x0 to x1, about `width` pixels wide; x1 > x0. */

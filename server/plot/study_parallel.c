@@ -132,7 +132,7 @@ static size_t make_lines(const struct rails *rails, size_t left, const struct rg
                          struct cloud_line *lines) {
   const struct rail *a = &rails->rail[left], *b = a + 1;
   const struct study_table *table = a->axis.table;
-  float heavy = 4 + (float)table->members / 400;
+  float heavy = 4 + (float)(table->members / 400);
   size_t count = 0;
   for (size_t row = 0; row < table->members; row++) {
     double from = study_axis_at(&a->axis, row), to = study_axis_at(&b->axis, row);

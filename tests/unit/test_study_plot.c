@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "server/plot/cloud.h"
 #include "tests/unit/plot_pictures.h"
 #include "tests/unit/study_plot_samples.h"
 
@@ -219,6 +220,89 @@ START_TEST(cells_follow_the_metric) {
 }
 END_TEST
 
+enum { SHEET = 200, LINES = 3000, BLOCK = 8 };
+
+/* A sheet of SHEET x SHEET with lines from edge to edge, drawn so many at a time. */
+static struct canvas *draw_lines(const struct cloud_line *lines, size_t some, double opacity) {
+  struct canvas *canvas = canvas_create(SHEET, SHEET, THEME_LIGHT);
+  ck_assert_ptr_nonnull(canvas);
+  struct cloud *cloud = cloud_create(canvas, (struct box){0, 0, SHEET, SHEET}, false);
+  ck_assert_ptr_nonnull(cloud);
+  for (size_t done = 0; done < LINES; done += some) {
+    cloud_lines(cloud, 0, SHEET, lines + done, some, 1);
+  }
+  cloud_paint(cloud, canvas, opacity);
+  cloud_destroy(cloud);
+  return canvas;
+}
+
+static const unsigned char *pixel_at(const struct canvas *canvas, int x, int y) {
+  return cairo_image_surface_get_data(canvas->surface) +
+         cairo_image_surface_get_stride(canvas->surface) * y + 4 * x;
+}
+
+static double block_mean(const struct canvas *canvas, int x, int y, int channel) {
+  double sum = 0;
+  for (int i = 0; i < BLOCK * BLOCK; i++) {
+    sum += pixel_at(canvas, x + i % BLOCK, y + i / BLOCK)[channel];
+  }
+  return sum / (BLOCK * BLOCK);
+}
+
+/* Thousands of lines are drawn in another way than a few: the same picture but for their edges. */
+START_TEST(many_lines_lie_where_few_do) {
+  static struct cloud_line lines[LINES];
+  uint32_t state = 7;
+  for (int k = 0; k < LINES; k++) {
+    float random[4];
+    for (int i = 0; i < 4; i++) {
+      state = state * 1664525 + 1013904223;
+      random[i] = (float)(state >> 8) / 16777216;
+    }
+    lines[k] = (struct cloud_line){
+        20 + 40 * random[0], 190 - 90 * random[1] * random[1], random[2], random[3], 0.5,
+        k % 10 == 0 ? 3 : 1};
+  }
+  struct canvas *many = draw_lines(lines, LINES, 0.02), *few = draw_lines(lines, 500, 0.02);
+  double apart = 0;
+  for (int y = 0; y < SHEET; y += BLOCK) {
+    for (int x = 0; x < SHEET; x += BLOCK) {
+      for (int c = 0; c < 3; c++) {
+        apart += fabs(block_mean(many, x, y, c) - block_mean(few, x, y, c));
+      }
+    }
+  }
+  ck_assert_double_lt(apart * BLOCK * BLOCK / (3.0 * SHEET * SHEET), 4);
+  canvas_destroy(many);
+  canvas_destroy(few);
+}
+END_TEST
+
+/* Level lines cover their row and nothing else, with the mean of their colours. */
+START_TEST(lines_leave_nothing_beside_them) {
+  static struct cloud_line lines[LINES];
+  for (int k = 0; k < LINES; k++) {
+    float y = k % 3 == 0 ? 0.5f : k % 3 == 1 ? 100.5f : SHEET - 0.5f;
+    lines[k] = k % 2 == 0 ? (struct cloud_line){y, y, 1, 0, 0, 1}
+                          : (struct cloud_line){y, y, 0, 0, 0.6f, 3};
+  }
+  struct canvas *canvas = draw_lines(lines, LINES, 0.5);
+  const unsigned char *paper = pixel_at(canvas, 0, 50);
+  for (int y = 0; y < SHEET; y++) {
+    for (int x = 0; x < SHEET; x++) {
+      const unsigned char *is = pixel_at(canvas, x, y);
+      if (y == 0 || y == 100 || y == SHEET - 1) {
+        ck_assert_int_le(abs(is[2] - 64), 1);
+        ck_assert_int_le(abs(is[0] - 115), 1);
+      } else {
+        ck_assert_mem_eq(is, paper, 4);
+      }
+    }
+  }
+  canvas_destroy(canvas);
+}
+END_TEST
+
 /* A member more changes a cloud's colours the same whatever the order. */
 START_TEST(clouds_do_not_depend_on_the_order) {
   struct study_sample *sample = study_sample_spread(1000, 0);
@@ -355,6 +439,8 @@ int main(void) {
   tcase_add_test(pictures, failed_members_are_shown);
   tcase_add_test(pictures, cells_that_failed_are_crossed_out);
   tcase_add_test(pictures, cells_follow_the_metric);
+  tcase_add_test(pictures, many_lines_lie_where_few_do);
+  tcase_add_test(pictures, lines_leave_nothing_beside_them);
   tcase_add_test(pictures, clouds_do_not_depend_on_the_order);
   tcase_add_test(pictures, cells_of_shapes);
   tcase_add_test(pictures, threads_draw_the_same);
