@@ -11,6 +11,8 @@ static const double cut_factor = 0.4, least_change = 0.4, most_change = 2;
 static const double steady_low = 0.8, steady_high = 1.4, too_much = 2;
 /* The corrections of a step stop this far below its error, in tolerances. */
 static const double solved = 1e-4;
+/* Forces of rigid objects settle by so much less in a step than at rest: the next step goes on. */
+static const double passing_forces = 5;
 /* Largest ratio of steps for differences of second order (they are stable up to 2.4). */
 static const double difference_ratio = 2.2;
 
@@ -123,7 +125,7 @@ static void measure(struct dynamics *d, const struct fe_state *state, const stru
 static enum status solve(struct dynamics *d, const struct fe_load *load, double pressure_before,
                          double h, struct fe_state *state, const struct motion *motion) {
   struct equilibrium *solver = d->solver;
-  double tolerance = solver->options.step_tolerance;
+  double tolerance = solver->options.step_tolerance, force = solver->options.force_tolerance;
   int iterations = 0;
   state_copy(d->model, &d->saved, state);
   prepare(d, state, motion, h);
@@ -134,10 +136,12 @@ static enum status solve(struct dynamics *d, const struct fe_load *load, double 
       d->factor_step == h && d->factorizations == d->model->statistics.factorizations;
   solver->pressure_step = 0;
   solver->options.step_tolerance = fmin(tolerance, solved * d->options.tolerance);
+  solver->options.force_tolerance = passing_forces * force;
   d->model->inertia = d->inertia;
   enum status status = equilibrium_solve(solver, load, pressure_before, state, &iterations);
   d->model->inertia = NULL;
   solver->options.step_tolerance = tolerance;
+  solver->options.force_tolerance = force;
   d->factor_step = solver->factor_fits ? h : 0;
   d->factorizations = d->model->statistics.factorizations;
   solver->factor_fits = false;

@@ -1,28 +1,20 @@
-#include "solver/fe/equilibrium.h"
+#include "solver/fe/equilibrium_internal.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include "solver/fe/obstacle_internal.h"
-#include "solver/fe/settling.h"
 
 enum {
   STALL_ITERATIONS = 5, /* give up after so many without a smaller correction */
   BACKTRACKS = 5,
-  AUGMENTATIONS = 30,
-  PATIENCE = 6, /* updates before swinging tractions are put up with */
   CHORD_STEPS = 12
 };
 
-/* Overlap, in thicknesses of the thinnest wall, that is put up with when multipliers do not settle:
- * anyway, and while the body rests. */
-static const double little_overlap = 0.002, most_overlap = 0.015;
-/* Change of the forces of rigid objects that is put up with when they do not settle. */
-static const double unsettled_forces = 0.02;
 /* Steps of which less than this part can be taken are cut short by far. */
 static const double rough_share = 0.25;
-/* Movement of a body at rest, in step tolerances. */
-static const double still_moves = 30;
+/* Part of the unbalanced forces that a rough polishing may leave. */
+static const double rough_force = 0.1;
 
 /* Root mean square nodal length of a vector of unknowns. */
 static double rms(const struct equilibrium *s, const double *v) {
@@ -191,12 +183,11 @@ static enum status take_step(struct equilibrium *s, struct fe_load *load, double
   return status;
 }
 
-/* Simplified Newton steps with the last factor while they contract. The residual belongs to the
- * state on entry and on exit. Returns true once converged. size is the last correction's. */
-static bool polish(struct equilibrium *s, struct fe_load *load, struct fe_state *state, double size,
-                   double first_contraction) {
+bool equilibrium_polish(struct equilibrium *s, struct fe_load *load, struct fe_state *state,
+                        const struct polishing *polishing) {
   struct fe_model *m = s->model;
-  double limit = first_contraction, tolerance = s->options.step_tolerance;
+  double limit = polishing->contraction, size = polishing->size;
+  double tolerance = s->options.step_tolerance, force = rms(s, m->residual);
   for (int k = 0; k < CHORD_STEPS; k++) {
     double change = correction(s, s->chord), *parameter = load_parameter(s, load);
     double next = size_of(s, s->chord);
@@ -215,7 +206,8 @@ static bool polish(struct equilibrium *s, struct fe_load *load, struct fe_state 
     s->moved += next;
     /* With a contraction rate the error left is rate / (1 - rate) times the last correction. */
     double rate = isfinite(size) ? fmin(next / size, 0.5) : 0.5;
-    if (next * rate / (1 - rate) < tolerance) {
+    if (next * rate / (1 - rate) < tolerance ||
+        (polishing->roughly && rms(s, m->residual) < rough_force * force)) {
       return true;
     }
     size = next;
@@ -239,7 +231,8 @@ static enum status step_and_polish(struct equilibrium *s, struct fe_load *load, 
   }
   s->moved += size;
   s->share = share;
-  *converged = status == STATUS_OK && share == 1 && polish(s, load, state, size, 0.1);
+  *converged = status == STATUS_OK && share == 1 &&
+               equilibrium_polish(s, load, state, &(struct polishing){size, 0.1, false});
   return status;
 }
 
@@ -258,8 +251,8 @@ static bool stalled(struct progress *progress, double size) {
   return progress->since >= STALL_ITERATIONS;
 }
 
-static enum status newton(struct equilibrium *s, struct fe_load *load, double stiffness_pressure,
-                          struct fe_state *state, int *iterations) {
+enum status equilibrium_newton(struct equilibrium *s, struct fe_load *load,
+                               double stiffness_pressure, struct fe_state *state, int *iterations) {
   struct fe_model *m = s->model;
   struct progress progress = {INFINITY, 0};
   int rough = 0;
@@ -318,116 +311,13 @@ static enum status predict(struct equilibrium *s, struct fe_load *load, struct f
   return converged ? STATUS_OK : STATUS_DIVERGED;
 }
 
-/* Finds the partners of the contact at the state that has been reached, with their tractions. A
- * state in which a part of the body has passed into another is none. */
-static enum status meet(struct equilibrium *s, struct fe_load *load, struct fe_state *state) {
-  struct fe_model *m = s->model;
-  enum status status = model_search_contact(m, state);
-  if (status == STATUS_OK && contact_intrusion(&m->contact) > 0.25 * m->mesh->wall_thickness) {
-    status = STATUS_CONTACT;
-  }
-  return status == STATUS_OK && m->pattern_stale ? model_evaluate(m, state, load, false) : status;
-}
-
-static bool touches(const struct fe_model *m) {
-  return m->use_contact || m->contact.plane_count > 0 || m->obstacle_count > 0;
-}
-
-/* Brings the state back into equilibrium after an update of the multipliers. */
-static enum status rebalance(struct equilibrium *s, struct fe_load *load, struct fe_state *state,
-                             int *iterations) {
-  enum status status = model_evaluate(s->model, state, load, false);
-  if (status == STATUS_OK && !polish(s, load, state, INFINITY, 1)) {
-    status = newton(s, load, load->pressure, state, iterations);
-  }
-  return status;
-}
-
-/* Whether the contact has settled: the last update did not move the body, and it changed the
- * tractions little, or, where more points touch than the surfaces can keep apart at once, so that
- * single tractions go on changing, the overlap is small. */
-static bool settled(const struct equilibrium *s, double change, int updates) {
-  const struct equilibrium_options *o = &s->options;
-  bool still = s->moved < still_moves * o->step_tolerance;
-  bool apart = updates >= PATIENCE &&
-               contact_summarise(&s->model->contact).penetration < o->overlap_tolerance;
-  return change < 0.1 * o->traction_tolerance ||
-         (still && (change < o->traction_tolerance || apart));
-}
-
-/* Raises the contact multipliers to the tractions until they settle; the factor stays frozen
- * while that contracts. */
-static enum status augment(struct equilibrium *s, struct fe_load *load, struct fe_state *state,
-                           int *iterations) {
-  struct fe_model *m = s->model;
-  double relaxation = 0, change = INFINITY, shift = 0;
-  s->moved = INFINITY;
-  if (s->settling) {
-    settling_restart(s->settling);
-  }
-  for (int k = 0; k < AUGMENTATIONS; k++) {
-    enum status status = meet(s, load, state);
-    if (status != STATUS_OK) {
-      return status;
-    }
-    if (s->options.passing && m->obstacle_count == 0) {
-      return STATUS_OK;
-    }
-    shift = s->settling ? settling_measure(s->settling, m) : 0;
-    change = contact_update_multipliers(&m->contact, &relaxation);
-    if (s->verbose) {
-      struct contact_summary c = contact_summarise(&m->contact);
-      fprintf(stderr,
-              "    augmentation %d: change %.3e Pa, overlap %.3e m, moved %.3e m, objects %.3e\n",
-              k, change, c.penetration, s->moved, shift);
-    }
-    if (settled(s, change, k) && shift < s->options.force_tolerance) {
-      return STATUS_OK;
-    }
-    if (s->settling) {
-      settling_update(s->settling, m);
-    }
-    s->moved = 0;
-    status = rebalance(s, load, state, iterations);
-    if (status != STATUS_OK) {
-      return status;
-    }
-  }
-  /* A body at rest with a little more overlap is an answer, with a warning in the result. */
-  double overlap = contact_summarise(&m->contact).penetration, wall = m->mesh->wall_thickness;
-  bool still = s->moved < still_moves * s->options.step_tolerance;
-  bool good = change < s->options.traction_tolerance || overlap < little_overlap * wall ||
-              (still && overlap < most_overlap * wall);
-  return good && shift < unsettled_forces ? STATUS_OK : STATUS_CONTACT;
-}
-
-/* Multipliers to start from: those of the state, carried on at the rate of the last step. */
-static void start_multipliers(struct equilibrium *s, const struct fe_state *state, double ratio) {
-  struct contact *contact = &s->model->contact;
-  for (int i = 0; i < contact->point_count; i++) {
-    double change = state->lambda[i] > 0 ? ratio * s->lambda_step[i] : 0;
-    contact->point[i].lambda = fmax(0, state->lambda[i] + change);
-  }
-  obstacles_use(s->model, state);
-}
-
-/* The state takes over the multipliers of the contact. */
-static void keep_multipliers(struct equilibrium *s, struct fe_state *state) {
-  const struct contact *contact = &s->model->contact;
-  for (int i = 0; i < contact->point_count; i++) {
-    s->lambda_step[i] = contact->point[i].lambda - state->lambda[i];
-    state->lambda[i] = contact->point[i].lambda;
-  }
-  obstacles_keep(s->model, state);
-}
-
 enum status equilibrium_solve(struct equilibrium *s, const struct fe_load *target,
                               double previous_pressure, struct fe_state *state, int *iterations) {
   enum status status = STATUS_DIVERGED;
   struct fe_load load = *target;
   double pressure_step = load.pressure - previous_pressure;
   bool continues = s->factor_fits && s->pressure_step != 0;
-  start_multipliers(s, state, continues ? pressure_step / s->pressure_step : 0);
+  equilibrium_start_multipliers(s, state, continues ? pressure_step / s->pressure_step : 0);
   *iterations = 0;
   if (s->factor_fits) {
     status = predict(s, &load, state);
@@ -435,12 +325,12 @@ enum status equilibrium_solve(struct equilibrium *s, const struct fe_load *targe
   }
   s->factor_fits = false;
   if (status != STATUS_OK) {
-    status = newton(s, &load, previous_pressure, state, iterations);
+    status = equilibrium_newton(s, &load, previous_pressure, state, iterations);
   }
-  if (status == STATUS_OK && touches(s->model)) {
-    status = augment(s, &load, state, iterations);
+  if (status == STATUS_OK && equilibrium_touches(s->model)) {
+    status = equilibrium_augment(s, &load, state, iterations);
   }
-  keep_multipliers(s, state);
+  equilibrium_keep_multipliers(s, state);
   s->pressure_step = pressure_step;
   s->factor_fits = status == STATUS_OK;
   return status;
@@ -458,7 +348,7 @@ enum status equilibrium_tangent(struct equilibrium *s, const struct fe_load *tar
                                 const struct fe_state *state, double *direction) {
   struct fe_load load = *target;
   load.stiffness_pressure = load.pressure;
-  start_multipliers(s, state, 0);
+  equilibrium_start_multipliers(s, state, 0);
   enum status status = model_evaluate(s->model, state, &load, true);
   if (status != STATUS_OK) {
     return status;
@@ -475,7 +365,7 @@ enum status equilibrium_follow(struct equilibrium *s, struct fe_load *load, bool
   struct equilibrium_control *c = &s->control;
   double size = rms(s, direction);
   *iterations = 0;
-  start_multipliers(s, state, 0);
+  equilibrium_start_multipliers(s, state, 0);
   c->dead = dead;
   c->active = true;
   for (int i = 0; i < s->model->dof_count; i++) {
@@ -485,12 +375,12 @@ enum status equilibrium_follow(struct equilibrium *s, struct fe_load *load, bool
   /* The pressures of the elements follow in the first correction. */
   apply(s, state, s->step, 1);
   *load_parameter(s, load) += change;
-  enum status status = newton(s, load, load->pressure, state, iterations);
-  if (status == STATUS_OK && touches(s->model)) {
-    status = augment(s, load, state, iterations);
+  enum status status = equilibrium_newton(s, load, load->pressure, state, iterations);
+  if (status == STATUS_OK && equilibrium_touches(s->model)) {
+    status = equilibrium_augment(s, load, state, iterations);
   }
   c->active = false;
-  keep_multipliers(s, state);
+  equilibrium_keep_multipliers(s, state);
   s->pressure_step = 0;
   s->factor_fits = false;
   return status;

@@ -72,34 +72,49 @@ void model_reject_obstacles(struct fe_model *m) {
   }
 }
 
-/* Ends the step for one point; returns the work that friction has dissipated there, J. */
+/* Ends the step for one point; returns the work that friction has dissipated there, J: by the mean
+ * of the tractions at both ends of the way, with which the works of the pressure and of the object
+ * are taken too, so that the ledger closes where contact comes or goes within a step. */
 static double commit_point(const struct obstacle *o, struct obstacle_point *point) {
   struct obstacle_memory *memory = &point->memory;
-  double traction[3], slip[3], work = 0;
-  if (!(point->pressure > 0)) {
+  bool touches = point->pressure > 0, slips = !touches || point->slips;
+  double place[3], traction[3], work = 0;
+  rigid_pose_inward(&o->pose, point->x, place);
+  rigid_pose_turn_inward(&o->pose, point->friction, traction);
+  for (int i = 0; i < 3; i++) {
+    double way = memory->seen && slips ? place[i] - memory->place[i] : 0;
+    work += 0.5 * point->area * (memory->drag[i] - traction[i]) * way;
+  }
+  if (!touches) {
     *memory = (struct obstacle_memory){.pressure = 0};
-    return 0;
-  }
-  if (memory->held && !point->slips) {
-    memset(memory->rubbed, 0, sizeof memory->rubbed);
-    return 0;
-  }
-  if (memory->held) {
-    rigid_pose_turn_inward(&o->pose, point->friction, traction);
-    rigid_pose_turn_inward(&o->pose, point->slip, slip);
-    /* Where it slipped before, the mean of the tractions is right to second order. */
-    bool rubbed = vec3_dot(memory->rubbed, memory->rubbed) > 0;
-    for (int i = 0; i < 3; i++) {
-      double end = -traction[i], start = rubbed ? memory->rubbed[i] : end;
-      work += 0.5 * point->area * (start + end) * slip[i];
-      memory->rubbed[i] = memory->traction[i] = end; /* the traction stays, without slip */
-    }
-  } else {
+  } else if (!memory->held) {
     rigid_pose_turn_inward(&o->pose, point->normal, memory->normal);
   }
-  memory->held = true;
-  rigid_pose_inward(&o->pose, point->x, memory->anchor);
+  for (int i = 0; i < 3; i++) {
+    memory->drag[i] = -traction[i];
+    memory->place[i] = place[i];
+    if (touches && slips) {
+      memory->traction[i] = -traction[i]; /* which stays, without slip */
+    }
+    if (touches && (slips || !memory->held)) {
+      memory->anchor[i] = place[i];
+    }
+  }
+  memory->held = touches;
+  memory->seen = true;
   return work;
+}
+
+/* Where all points are, also those out of reach. */
+static void find_places(const struct fe_model *m, const double *u, struct obstacle *o) {
+  for (int f = 0; f < m->contact.face_count; f++) {
+    int nodes[QUAD9_NODES];
+    double x[QUAD9_NODES][3];
+    obstacle_face_positions(m, u, f, nodes, x);
+    for (int q = 0; q < QUAD9_POINTS; q++) {
+      obstacle_point_place(&m->quad9, q, x, o->point[QUAD9_POINTS * f + q].x);
+    }
+  }
 }
 
 /* Work that the object's motion since the last commit has done on the body, by the mean of the
@@ -130,6 +145,7 @@ void model_commit_obstacles(struct fe_model *m, struct fe_state *state) {
     struct obstacle *o = m->obstacle[k];
     struct obstacle_state sums = model_obstacle_state(m, k);
     o->friction_work = 0;
+    find_places(m, state->u, o);
     for (int i = 0; i < QUAD9_POINTS * m->contact.face_count; i++) {
       o->friction_work += commit_point(o, &o->point[i]);
     }

@@ -7,8 +7,10 @@
  *   trial = tau + eps_t (1 - n n^T) (x - y),  t = -trial, cut back to |t| <= r = mu lambda,
  * where tau and lambda are the multipliers. r is that of the last update too (Tresca), so that the
  * tangent is symmetric; updates go on until r, tau and lambda have settled: then Coulomb's law
- * holds whatever eps and eps_t (Simo, Laursen 1992). A point that has just come into contact has no
- * stick point before the step is committed.
+ * holds whatever eps and eps_t (Simo, Laursen 1992). A point that comes into contact has slipped
+ * since it touched only: of its way in the step the part d / (d + g), where g was its distance at
+ * the last commit and d is by how much it would have passed into the object since. That settles its
+ * stick point at the first update of the multipliers.
  *
  * Multipliers and stick points are part of a state (struct fe_state), in the object's frame: a step
  * that failed leaves no trace when its state is dropped. How a driver takes a step:
@@ -31,8 +33,10 @@ struct obstacle_memory {
   double traction[3]; /* multiplier tau, Pa: against the friction on the body */
   double normal[3];   /* to which tau is tangential; unit, out of the object */
   double anchor[3];   /* stick point, m */
-  double rubbed[3];   /* tau at the last commit, if the point slipped then; else 0 */
+  double place[3];    /* of the point at the last commit, m */
+  double drag[3];     /* minus the friction on the body at the last commit, Pa */
   bool held;          /* has a stick point */
+  bool seen;          /* there has been a commit */
 };
 
 /* One surface point as last evaluated; vectors in the frame of the model. */

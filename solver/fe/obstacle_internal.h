@@ -26,6 +26,10 @@ bool obstacle_face_evaluate(const struct obstacle *obstacle, const struct quad9_
                             struct obstacle_point point[QUAD9_POINTS], double x[QUAD9_NODES][3],
                             double r[3 * QUAD9_NODES], double (*stiffness)[3 * QUAD9_NODES]);
 
+/* Place of point q of a face with nodes x, m. */
+void obstacle_point_place(const struct quad9_tables *tables, int q, double x[QUAD9_NODES][3],
+                          double place[3]);
+
 /* Current area of the surface around point q of a face, m2. */
 double obstacle_current_area(const struct quad9_tables *tables, int q, double x[QUAD9_NODES][3]);
 
@@ -71,7 +75,7 @@ void obstacle_face_multipliers(const struct obstacle *obstacle, int f,
                                double change[QUAD9_POINTS][OBSTACLE_VALUES]);
 
 /* Gives the points of face f these multipliers, lambda at least 0 and tau turned into the tangent
- * plane at the present place of the point. */
+ * plane at the present place of the point. Points that have come into contact get a stick point. */
 void obstacle_face_set(const struct obstacle *obstacle, int f,
                        double value[QUAD9_POINTS][OBSTACLE_VALUES]);
 

@@ -110,6 +110,16 @@ bool obstacle_point_evaluate(const struct obstacle *o, struct obstacle_point *po
   return true;
 }
 
+void obstacle_point_place(const struct quad9_tables *tables, int q, double x[QUAD9_NODES][3],
+                          double place[3]) {
+  for (int i = 0; i < 3; i++) {
+    place[i] = 0;
+    for (int m = 0; m < QUAD9_NODES; m++) {
+      place[i] += tables->n[q][m] * x[m][i];
+    }
+  }
+}
+
 double obstacle_current_area(const struct quad9_tables *tables, int q, double x[QUAD9_NODES][3]) {
   double a[3] = {0}, b[3] = {0}, normal[3];
   for (int m = 0; m < QUAD9_NODES; m++) {
@@ -143,13 +153,7 @@ bool obstacle_face_evaluate(const struct obstacle *o, const struct quad9_tables 
   for (int q = 0; q < QUAD9_POINTS; q++) {
     const double *n = tables->n[q];
     struct obstacle_law law;
-    double place[3] = {0};
-    for (int m = 0; m < QUAD9_NODES; m++) {
-      for (int i = 0; i < 3; i++) {
-        place[i] += n[m] * x[m][i];
-      }
-    }
-    memcpy(point[q].x, place, sizeof place);
+    obstacle_point_place(tables, q, x, point[q].x);
     if (!obstacle_point_evaluate(o, &point[q], stiffness, &law)) {
       continue;
     }

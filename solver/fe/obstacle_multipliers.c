@@ -68,6 +68,23 @@ static void turn_tangent(const double a[3], const double b[3], double t[3]) {
   }
 }
 
+/* Gives a point that was apart at the last commit the stick point where it touched: see obstacle.h.
+ */
+static void touch(const struct obstacle *o, struct obstacle_point *point) {
+  struct obstacle_memory *memory = &point->memory;
+  double depth = point->pressure / o->stiffness, place[3];
+  struct rigid_nearest start;
+  bool apart = rigid_shape_nearest(o->shape, memory->place, INFINITY, &start) && start.distance > 0;
+  double share = apart ? depth / (depth + start.distance) : 1;
+  rigid_pose_inward(&o->pose, point->x, place);
+  for (int i = 0; i < 3; i++) {
+    memory->anchor[i] = place[i] - share * (place[i] - memory->place[i]);
+    memory->traction[i] = 0;
+  }
+  rigid_pose_turn_inward(&o->pose, point->normal, memory->normal);
+  memory->held = true;
+}
+
 void obstacle_face_set(const struct obstacle *o, int f,
                        double value[QUAD9_POINTS][OBSTACLE_VALUES]) {
   for (int q = 0; q < QUAD9_POINTS; q++) {
@@ -75,6 +92,10 @@ void obstacle_face_set(const struct obstacle *o, int f,
     struct obstacle_memory *memory = &point->memory;
     double normal[3];
     memory->pressure = fmax(0, value[q][0]);
+    if (!memory->held && memory->seen && point->pressure > 0) {
+      touch(o, point);
+      continue;
+    }
     if (!memory->held || !isfinite(point->gap)) {
       continue;
     }

@@ -7,7 +7,7 @@
 #include "solver/fe/obstacle_internal.h"
 #include "solver/base/vec3.h"
 
-enum { WINDOW = 5 };
+enum { WINDOW = 8 };
 /* An update after which the difference has grown by this much starts anew. */
 static const double growth = 2;
 /* Of the normal equations of the differences, by their trace. */
@@ -101,7 +101,7 @@ static double add_face(struct settling *s, const struct fe_model *m, const struc
   return size;
 }
 
-double settling_measure(struct settling *s, const struct fe_model *m) {
+struct settling_change settling_measure(struct settling *s, const struct fe_model *m) {
   double wall = m->mesh->wall_thickness, size = 0, sum = 0;
   size_t next = 0;
   memset(s->force, 0, sizeof *s->force * (size_t)s->forces);
@@ -124,7 +124,8 @@ double settling_measure(struct settling *s, const struct fe_model *m) {
   double rate = s->has_last && s->last_size > 0 ? sum / s->last_size : 0.5;
   double left = fmax(0.5, fmin(0.9, rate)) / (1 - fmax(0.5, fmin(0.9, rate)));
   /* Forces too small to matter need not settle by that part of themselves. */
-  return left * sum / (size + 1e-2 * material_shear_modulus(&m->material) * wall * wall);
+  double next_change = sum / (size + 1e-2 * material_shear_modulus(&m->material) * wall * wall);
+  return (struct settling_change){next_change, left * next_change};
 }
 
 /* Takes the differences to the last update into the window. */

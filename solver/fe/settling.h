@@ -16,9 +16,13 @@ void settling_destroy(struct settling *settling);
 /* Forgets earlier updates: a new sequence begins. */
 void settling_restart(struct settling *settling);
 
-/* By how much the nodal forces of the objects are still to change, as a part of these forces: from
- * the change by the update that is due, and how that has fallen since the last one. */
-double settling_measure(struct settling *settling, const struct fe_model *model);
+/* By how much the nodal forces of the objects change by the update that is due, and by how much
+ * they are still to change in all, from how that has fallen since the last one; as parts of them.
+ */
+struct settling_change {
+  double next, left;
+};
+struct settling_change settling_measure(struct settling *settling, const struct fe_model *model);
 
 /* Renews the multipliers, after settling_measure. The model has to be evaluated anew. */
 void settling_update(struct settling *settling, struct fe_model *model);

@@ -104,11 +104,30 @@ static bool final(enum status status) {
          status == STATUS_IO;
 }
 
+static void tell_energy(const struct course *c) {
+  const struct energy *e = &c->f->energy;
+  if (c->f->solve.solver->verbose) {
+    const struct fe_statistics *s = &c->f->solve.model->statistics;
+    fprintf(
+        stderr,
+        "  energy: pressure %.4g weight %.4g object %.4g strain %.4g friction %.4g damping %.4g "
+        "missing %.4g mJ\n",
+        1e3 * e->pressure_work, 1e3 * e->weight_work, 1e3 * e->obstacle_work, 1e3 * e->strain,
+        1e3 * e->friction, 1e3 * e->damping, 1e3 * e->remainder);
+    fprintf(stderr,
+            "  spent: %d factorisations %.2f s, %d solves %.2f s, %d tangents %.2f s, %d residuals "
+            "%.2f s, contact %.2f s\n",
+            s->factorizations, s->factor_s, s->solves, s->solve_s, s->assemblies, s->assembly_s,
+            s->residuals, s->residual_s, s->contact_s);
+  }
+}
+
 /* Notes a step of the ledger that ended at rest. */
 static void record_energy(struct course *c, const struct fe_load *load) {
   struct obstacle_state o = model_obstacle_state(c->f->solve.model, c->f->obstacle);
   struct energy_step step = {.friction = o.friction_work, .obstacle_work = o.motion_work};
   energy_record(&c->f->energy, c->f->solve.model, &c->f->solve.state, load, &step);
+  tell_energy(c);
 }
 
 /* Root mean square way of the nodes from the last state to the one that was tried, m. */
@@ -206,6 +225,7 @@ static enum status carry_to(struct course *c, double target) {
             grasp_stage_word(c->stage.kind), target, status_word(status), report.steps, report.time,
             report.rested ? "rests" : "moves");
   }
+  tell_energy(c);
   c->jumps++;
   c->report->carried++;
   c->moving += target - c->along;
@@ -241,9 +261,10 @@ static bool is_free(struct course *c) {
          shift - c->report->free_at > pull->after_contact * pull->distance - 1e-12;
 }
 
+/* The way to the goal in equal steps: a short one at its end would gain nothing. */
 static double next_target(const struct course *c, double goal) {
-  double target = c->along + c->step;
-  return target > goal - 0.05 * c->step ? goal : target;
+  double count = ceil((goal - c->along) / c->step - 0.05);
+  return count <= 1 ? goal : c->along + (goal - c->along) / count;
 }
 
 /* Where steps have become too short, tries long ones: the place at which Newton's method fails may

@@ -89,6 +89,38 @@ START_TEST(numerics_do_not_decide_the_force) {
 }
 END_TEST
 
+/* A ball that is drawn along under a coarse finger meets row after row of its points. Each rubs
+ * from where it touches, so that the force has no dip where one does: no sample of the sliding ball
+ * is far below both of its neighbours. */
+START_TEST(points_that_touch_anew_rub) {
+  const char *const edits[][2] = {
+      {"/actuator", "{\"family\": \"pneunet\", \"length\": \"60 mm\", \"width\": \"20 mm\", "
+                    "\"height\": \"15 mm\", \"chambers\": [{\"config\": \"B\", \"count\": 4}], "
+                    "\"side_wall\": \"2 mm\", \"top_wall\": \"2 mm\", \"bottom_layer\": \"4 mm\"}"},
+      {"/load", "{\"pressure\": {\"to\": \"30 kPa\", \"steps\": 3}}"},
+      {"/object", "{\"shape\": {\"form\": \"sphere\", \"diameter\": \"30 mm\"}, "
+                  "\"position\": [\"45 mm\", 0, \"-15.5 mm\"], \"friction\": 0.5}"},
+      {"/grasp", "{\"pull\": {\"direction\": [1, 0, 0], \"distance\": \"12 mm\", \"steps\": 12}}"},
+      {NULL, NULL}};
+  json_t *document = solve(edits), *samples = json_object_get(document, "samples");
+  size_t count = json_array_size(samples), slipping = 0;
+  ck_assert_uint_gt(count, 12);
+  for (size_t i = count - 12; i + 1 < count; i++) {
+    double force[3];
+    for (size_t k = 0; k < 3; k++) {
+      const json_t *sample = json_array_get(samples, i + k - 1);
+      force[k] = json_number_value(json_object_get(sample, "grasp_force_N"));
+    }
+    if (json_number_value(json_object_get(json_array_get(samples, i - 1), "slip_share")) == 1) {
+      ck_assert_double_gt(force[1], 0.85 * fmin(force[0], force[2]));
+      slipping++;
+    }
+  }
+  ck_assert_uint_gt(slipping, 6);
+  json_decref(document);
+}
+END_TEST
+
 /* An object out of reach feels nothing, and the result says so. */
 START_TEST(what_is_not_touched_feels_nothing) {
   const char *const edits[][2] = {{"/object/position", "[0, 0, \"-60 mm\"]"}, {NULL, NULL}};
@@ -212,6 +244,7 @@ int main(void) {
   tcase_set_timeout(tcase, 300);
   tcase_add_test(tcase, a_plane_drawn_away_is_held_by_friction);
   tcase_add_test(tcase, numerics_do_not_decide_the_force);
+  tcase_add_test(tcase, points_that_touch_anew_rub);
   tcase_add_test(tcase, what_is_not_touched_feels_nothing);
   tcase_add_test(tcase, a_symmetric_gripper_is_its_finger_times_their_number);
   tcase_add_test(tcase, a_blocked_tip_pushes_more_the_nearer_the_plate);
