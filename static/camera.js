@@ -3,7 +3,7 @@
 import { OrbitControls, PerspectiveCamera, Sphere, Vector3 } from './vendor/three.js';
 
 const FIELD_OF_VIEW = 24; // degrees: little perspective, so that lengths can be compared
-const FRONT = new Vector3(0.42, -1, 0.42).normalize(); // from the front, right and above, like the plots
+const FRONT = [0.42, -1, 0.42]; // from the front, right and above, like the plots
 const STEP = Math.PI / 18; // of a key
 const UP = new Vector3(0, 0, 1);
 
@@ -14,11 +14,13 @@ export class Camera {
     this.camera = new PerspectiveCamera(FIELD_OF_VIEW, 4 / 3, 1, 10000);
     this.camera.up.copy(UP);
     this.sphere = new Sphere(new Vector3(), 1);
+    this.from = new Vector3(...FRONT).normalize();
     this.controls = [];
   }
 
-  // Looks at a box around everything, from the direction it starts with.
-  frame(box) {
+  // Looks at a box around everything, from a direction.
+  frame(box, from = FRONT) {
+    this.from = new Vector3(...from).normalize();
     box.getBoundingSphere(this.sphere);
     this.reset();
   }
@@ -29,7 +31,7 @@ export class Camera {
   }
 
   reset() {
-    this.camera.position.copy(this.sphere.center).addScaledVector(FRONT, this.distance);
+    this.camera.position.copy(this.sphere.center).addScaledVector(this.from, this.distance);
     this.camera.near = this.sphere.radius / 100;
     this.camera.far = this.sphere.radius * 100;
     this.camera.updateProjectionMatrix();

@@ -10,6 +10,7 @@ import { Skin, stillGeometry } from './skin.js';
 
 const MOMENTS = { before: 'Before', inflated: 'Inflated', peak: 'Peak force', held: 'Last touch' };
 const STAGES = { gravity: 'Weight', approach: 'Approach', inflation: 'Inflation', pull: 'Pull', release: 'Release' };
+const SIDES = [-1, 1].flatMap((y) => [0.42, -0.7].flatMap((x) => [0.42, -0.7].map((z) => [x, y, z]))); // as of the plots
 const OBJECT_REACH = 0.35; // how much of the object the view starts with beside the fingers, in their size
 
 const scaleShades = areaShades();
@@ -128,6 +129,20 @@ class Grasp {
     put(this.held, this.frames[0].pose);
     const object = new Box3().setFromArray(this.object.place).applyMatrix4(this.held.matrix);
     return object.intersectsBox(near) ? box.union(object.intersect(near)) : box;
+  }
+
+  // The side from which most of the contact pressure is seen where the view starts.
+  side() {
+    const touch = this.fields.find(({ name }) => name === 'contact_pressure');
+    if (!touch || this.start === undefined) {
+      return SIDES[0];
+    }
+    this.set(this.start, touch);
+    const seen = SIDES.map((side) => this.fingers.reduce((sum, { matrix }, i) => {
+      const from = new Vector3(...side).normalize().transformDirection(matrix.clone().invert());
+      return sum + this.skins[this.bodies.indexOf(this.fingerBodies[i])].seen(from);
+    }, 0));
+    return SIDES[seen.findIndex((value) => value * 1.001 >= Math.max(...seen))];
   }
 
   draw(renderer, camera, [width, height], toggled) {

@@ -100,7 +100,7 @@ class ShapeView {
     this.camera = new Camera(() => this.draw());
     this.camera.attach(this.canvas);
     this.camera.camera.aspect = this.canvas.clientWidth / this.canvas.clientHeight || 4 / 3;
-    this.camera.frame(subject.box());
+    this.camera.frame(subject.box(), subject.side?.());
     this.readAddress();
     this.change();
     new ResizeObserver(() => this.draw()).observe(this.canvas);

@@ -148,6 +148,20 @@ export class Skin {
     this.surface.places.forEach((channel, i) => this.surface.fill(channel, position, this.place, i, 3));
   }
 
+  // The sum of the present values over the area that looks in a direction.
+  seen(direction) {
+    const { quads } = this.surface;
+    let sum = 0;
+    for (let q = 0, n = 0; q < quads.length; q += 4, n += 3) {
+      const facing = direction.x * this.faces[n] + direction.y * this.faces[n + 1] + direction.z * this.faces[n + 2];
+      if (facing > 0) {
+        sum += facing * (this.value[quads[q]] + this.value[quads[q + 1]] + this.value[quads[q + 2]]
+          + this.value[quads[q + 3]]);
+      }
+    }
+    return sum;
+  }
+
   // Puts the body into its shape at a position, coloured by a field from low to high.
   set(position, field, [low, high], shades) {
     const { position: vertices, normal, color } = this.body.attributes;

@@ -83,8 +83,9 @@ void raster_triangle(struct raster *raster, const struct raster_vertex corners[3
       float depth = (float)(a->depth + wb * (b->depth - a->depth) + wc * (c->depth - a->depth));
       if (depth < raster->depth[i]) {
         double value = a->value + wb * (b->value - a->value) + wc * (c->value - a->value);
+        int shade = clamp(value * RASTER_SHADES, RASTER_SHADES - 1);
         raster->depth[i] = depth;
-        raster->samples[i] = pack(shades[clamp(value * RASTER_SHADES, RASTER_SHADES - 1)], light);
+        raster->samples[i] = shade < raster->lowest ? 0 : pack(shades[shade], light);
       }
     }
   }

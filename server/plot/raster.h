@@ -12,6 +12,7 @@ struct raster {
   int factor;
   uint32_t *samples; /* 0xAARRGGBB, transparent where nothing was drawn */
   float *depth;      /* of the nearest thing drawn, infinite where nothing was */
+  int lowest;        /* what has a lower shade hides what is behind it, but stays transparent */
 };
 
 struct raster_vertex {

@@ -28,6 +28,7 @@ struct scene {
 struct album {
   struct frames frames;
   struct contact_scale scale;
+  struct solid_view view; /* its scale and place are those of no scene */
   struct scene scene[SHOTS];
   size_t count;
   struct solid_edge **edges; /* of each body */
@@ -68,7 +69,6 @@ static struct solid_box nearby(struct solid_box box, const struct solid_box *bod
 
 static enum status scene_make(const struct frames *f, const struct contact_scale *scale,
                               struct scene *scene, struct error *error) {
-  struct solid_view view = solid_view_front();
   size_t points = finger_first(f, f->finger_count);
   scene->fingers = malloc((points + 1) * sizeof *scene->fingers);
   scene->values = malloc((points + 1) * sizeof *scene->values);
@@ -76,7 +76,6 @@ static enum status scene_make(const struct frames *f, const struct contact_scale
   if (!scene->fingers || !scene->values || !scene->object) {
     return error_set(error, STATUS_NO_MEMORY, NULL, "memory ran out for the moments of a grasp");
   }
-  struct solid_box body = solid_box_empty(), object = solid_box_empty();
   for (size_t k = 0; k < f->finger_count; k++) {
     const struct frames_body *own = &f->bodies[f->fingers[k].body];
     size_t from = own->first, to = finger_first(f, k);
@@ -84,16 +83,49 @@ static enum status scene_make(const struct frames *f, const struct contact_scale
       scene->fingers[to + p] = frames_moved(&f->fingers[k].pose, scene->shot->place[from + p]);
       scene->values[to + p] = contact_scale_at(scale, scene->shot->contact[from + p]);
     }
-    struct solid finger = finger_of(f, scene, k);
-    solid_box_widen(&body, &view, &finger);
   }
   for (size_t p = 0; p < f->object_point_count; p++) {
     scene->object[p] = frames_moved(&scene->shot->pose, f->object[p]);
   }
-  struct solid held = object_of(f, scene);
-  solid_box_widen(&object, &view, &held);
-  scene->box = f->object_point_count > 0 ? nearby(object, &body) : body;
   return STATUS_OK;
+}
+
+static void scene_bound(const struct frames *f, const struct solid_view *view,
+                        struct scene *scene) {
+  struct solid_box body = solid_box_empty(), object = solid_box_empty();
+  for (size_t k = 0; k < f->finger_count; k++) {
+    struct solid finger = finger_of(f, scene, k);
+    solid_box_widen(&body, view, &finger);
+  }
+  struct solid held = object_of(f, scene);
+  solid_box_widen(&object, view, &held);
+  scene->box = f->object_point_count > 0 ? nearby(object, &body) : body;
+}
+
+/* The side from which most of the pressure is seen; the first of them where that is alike. */
+static void choose_view(struct album *album) {
+  static const struct skin_point sides[] = {{0.42, -1, 0.42}, {0.42, -1, -0.7}, {-0.7, -1, 0.42},
+                                            {-0.7, -1, -0.7}, {0.42, 1, 0.42},  {0.42, 1, -0.7},
+                                            {-0.7, 1, 0.42},  {-0.7, 1, -0.7}};
+  double most = -1;
+  for (size_t s = 0; s < sizeof sides / sizeof *sides; s++) {
+    struct solid_view view = solid_view_from(sides[s]);
+    double seen = 0;
+    for (size_t i = 0; i < album->count; i++) {
+      const struct scene *scene = &album->scene[i];
+      for (size_t k = 0; k < album->frames.finger_count; k++) {
+        struct solid finger = finger_of(&album->frames, scene, k);
+        seen += solid_seen(&finger, scene->values + finger_first(&album->frames, k), &view);
+      }
+    }
+    if (seen > 1.001 * most) {
+      most = seen;
+      album->view = view;
+    }
+  }
+  for (size_t i = 0; i < album->count; i++) {
+    scene_bound(&album->frames, &album->view, &album->scene[i]);
+  }
 }
 
 static enum status find_edges(struct album *album, struct error *error) {
@@ -134,7 +166,11 @@ static enum status album_make(const char *directory, enum colour_theme theme, st
   if (status == STATUS_OK && album->count == 0) {
     return error_set(error, STATUS_SYNTAX, NULL, "moments.bin is damaged: it marks no moments");
   }
-  return status == STATUS_OK ? find_edges(album, error) : status;
+  if (status == STATUS_OK) {
+    choose_view(album);
+    status = find_edges(album, error);
+  }
+  return status;
 }
 
 static void album_release(struct album *album) {
@@ -209,23 +245,43 @@ static void draw_object(const struct album *album, const struct scene *scene,
                 view, raster);
 }
 
-/* The object is drawn through glass: once without it, and over that once with it, half as strong.
- */
+/* Where a finger touches the object, whatever of the object is before it. */
+static void draw_touch(const struct album *album, const struct scene *scene,
+                       const struct solid_view *view, struct raster *raster) {
+  raster->lowest = 1;
+  for (size_t k = 0; k < album->frames.finger_count; k++) {
+    struct solid finger = finger_of(&album->frames, scene, k);
+    solid_fill(&finger, scene->values + finger_first(&album->frames, k), album->scale.shades, 0.72,
+               view, raster);
+  }
+}
+
+/* NULL when memory ran out. */
+static struct raster *layer_create(struct box area) {
+  return raster_create((int)area.width, (int)area.height, 2);
+}
+
+/* The object is drawn through glass: once without it, over that once with it, half as strong, and
+ * over that what it touches. */
 static bool draw_scene(const struct album *album, const struct scene *scene, struct canvas *canvas,
                        struct box area, double scale) {
-  struct raster *raster = raster_create((int)area.width, (int)area.height, 2);
-  if (!raster) {
-    return false;
-  }
-  struct solid_view view = solid_view_front();
-  solid_view_centre(&view, &scene->box, scale * raster->factor, raster);
-  draw_fingers(album, scene, canvas, &view, raster);
-  bool good = raster_paint(raster, canvas->cr, round(area.x), round(area.y), 1);
-  if (album->frames.object_quad_count > 0) {
-    draw_object(album, scene, canvas, &view, raster);
-    good = good && raster_paint(raster, canvas->cr, round(area.x), round(area.y), OBJECT_GLASS);
+  struct raster *raster = layer_create(area), *touch = layer_create(area);
+  double x = round(area.x), y = round(area.y);
+  bool good = raster && touch;
+  if (good) {
+    struct solid_view view = album->view;
+    solid_view_centre(&view, &scene->box, scale * raster->factor, raster);
+    draw_fingers(album, scene, canvas, &view, raster);
+    good = raster_paint(raster, canvas->cr, x, y, 1);
+    if (album->frames.object_quad_count > 0) {
+      draw_object(album, scene, canvas, &view, raster);
+      draw_touch(album, scene, &view, touch);
+      good = good && raster_paint(raster, canvas->cr, x, y, OBJECT_GLASS) &&
+             raster_paint(touch, canvas->cr, x, y, 1);
+    }
   }
   raster_destroy(raster);
+  raster_destroy(touch);
   return good;
 }
 

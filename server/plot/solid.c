@@ -24,12 +24,22 @@ struct solid_view solid_view_oblique(void) {
                              .light = {-0.32, -0.66, 0.68}};
 }
 
-struct solid_view solid_view_front(void) {
-  /* towards the viewer: (0.42, -1, 0.42), of length 1.163 */
-  return (struct solid_view){.across = {0.9220, 0.3872, 0},
-                             .up = {-0.1398, 0.3329, 0.9325},
-                             .away = {-0.3611, 0.8598, -0.3611},
-                             .light = {-0.1569, -0.5318, 0.8322}};
+/* Zero stays zero. */
+static struct skin_point unit(struct skin_point p) {
+  double length = sqrt(dot(p, p)), factor = length > 0 ? 1 / length : 0;
+  return (struct skin_point){factor * p.x, factor * p.y, factor * p.z};
+}
+
+struct solid_view solid_view_from(struct skin_point viewer) {
+  /* the lamp as the viewer sees it: to the left, above or below like the viewer, behind */
+  const double left = 0.35, high = viewer.z < 0 ? -0.62 : 0.62, behind = 0.70;
+  struct skin_point out = unit(viewer);
+  struct skin_point across = unit((struct skin_point){-out.y, out.x, 0}), up = cross(out, across);
+  struct skin_point lamp = {behind * out.x - left * across.x + high * up.x,
+                            behind * out.y - left * across.y + high * up.y,
+                            behind * out.z - left * across.z + high * up.z};
+  return (struct solid_view){
+      .across = across, .up = up, .away = {-out.x, -out.y, -out.z}, .light = unit(lamp)};
 }
 
 struct solid_box solid_box_empty(void) {
@@ -73,20 +83,29 @@ static double towards_viewer(const struct solid_view *view, struct skin_point n)
 
 /* ---- faces ------------------------------------------------------------------------------- */
 
-/* Unit normal of a quad from its diagonals; zero for a degenerate one. */
-static struct skin_point quad_normal(const struct solid *solid, size_t quad) {
+/* Half the cross product of the diagonals: the normal, its length the area. */
+static struct skin_point quad_area(const struct solid *solid, size_t quad) {
   const size_t *q = solid->quads[quad];
   struct skin_point a = solid->points[q[0]], b = solid->points[q[1]];
   struct skin_point c = solid->points[q[2]], d = solid->points[q[3]];
   struct skin_point e = {c.x - a.x, c.y - a.y, c.z - a.z}, f = {d.x - b.x, d.y - b.y, d.z - b.z};
   struct skin_point n = cross(e, f);
-  double length = sqrt(dot(n, n));
-  if (length > 0) {
-    n.x /= length;
-    n.y /= length;
-    n.z /= length;
+  return (struct skin_point){n.x / 2, n.y / 2, n.z / 2};
+}
+
+/* Unit normal of a quad; zero for a degenerate one. */
+static struct skin_point quad_normal(const struct solid *solid, size_t quad) {
+  return unit(quad_area(solid, quad));
+}
+
+double solid_seen(const struct solid *solid, const double *values, const struct solid_view *view) {
+  double sum = 0;
+  for (size_t i = 0; i < solid->quad_count; i++) {
+    const size_t *q = solid->quads[i];
+    double value = (values[q[0]] + values[q[1]] + values[q[2]] + values[q[3]]) / 4;
+    sum += value * fmax(-dot(view->away, quad_area(solid, i)), 0);
   }
-  return n;
+  return sum;
 }
 
 void solid_fill(const struct solid *solid, const double *values,

@@ -28,8 +28,9 @@ struct solid_view {
 /* Looks from the front (-y), right and above, such that lengths and angles in the plane y = 0 stay
  * true; scale and place are left to solid_view_fit. */
 struct solid_view solid_view_oblique(void);
-/* Looks from the same side at right angles to the picture, as the pages do. */
-struct solid_view solid_view_front(void);
+/* Looks at right angles from a direction, which is not upright and need not be a unit vector; what
+ * faces the viewer is lit. */
+struct solid_view solid_view_from(struct skin_point viewer);
 
 /* A rectangle in mm of the projection. */
 struct solid_box {
@@ -50,6 +51,10 @@ void solid_view_centre(struct solid_view *view, const struct solid_box *box, dou
 void solid_fill(const struct solid *solid, const double *values,
                 const struct rgb shades[RASTER_SHADES], double ambient,
                 const struct solid_view *view, struct raster *raster);
+
+/* The sum of the values over the area of the faces that look at the viewer, as it is seen from
+ * there, in mm2; what hides it is not asked. values: at each point. */
+double solid_seen(const struct solid *solid, const double *values, const struct solid_view *view);
 
 /* An edge of a quadrilateral. */
 struct solid_edge {

@@ -156,6 +156,19 @@ static struct picture draw_dark(const char *plot, const struct plot_input *input
   return picture;
 }
 
+/* Pixels left of the bar of colours in the colours of contact, in light or shade: all else there is
+ * grey, tan or nearly so. */
+static size_t touching(const struct picture *picture) {
+  size_t count = 0;
+  for (int y = 0; y < (int)picture->image.height; y++) {
+    for (int x = 0; x < (int)picture->image.width * 7 / 8; x++) {
+      const unsigned char *c = picture->rgb + 3 * ((size_t)y * picture->image.width + (size_t)x);
+      count += c[1] > c[0] + 30;
+    }
+  }
+  return count;
+}
+
 START_TEST(snapshots_show_the_moments) {
   json_t *result = plot_sample_grasp(12);
   struct plot_input input = {result, directory, "spool, twisted", 3, NULL, NULL};
@@ -164,7 +177,7 @@ START_TEST(snapshots_show_the_moments) {
     plot_sample_frames(directory, fingers);
     snprintf(name, sizeof name, "grasp-snapshots-%d", fingers);
     struct picture picture = picture_draw("snapshots", &input, 1, 800, 600, name);
-    ck_assert_uint_gt(picture_count(&picture, 253, 231, 37), 10); /* the top of the scale */
+    ck_assert_uint_gt(touching(&picture), 200); /* although the body is over the object */
     free(picture.rgb);
     snprintf(name, sizeof name, "grasp-snapshots-dark-%d", fingers);
     free(draw_dark("snapshots", &input, name).rgb);
