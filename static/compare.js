@@ -23,17 +23,18 @@ function jobs() {
 
 async function samplesOf({ id, name }) {
   try {
-    const { samples } = await request(jobUrl(id, '/result'));
-    return { id, name, samples: samples || [] };
+    const { kind, samples } = await request(jobUrl(id, '/result'));
+    return { id, name, kind, samples: samples || [] };
   } catch {
     return { id, name, samples: [] }; // a job without a result has no curve
   }
 }
 
-// Of grasps that pull, the pull is what is compared: its samples, and the key of what they are drawn over.
+// Of grasps the pull is what is compared, where any came so far: its samples, and the key of what they are drawn over.
 function pulls(all) {
   const stages = all.map(({ samples, ...job }) => ({ ...job, samples: samples.filter(({ stage }) => stage === 'pull') }));
-  return stages.every(({ samples }) => samples.length > 0) ? [stages, WAY] : [all, PRESSURE];
+  const grasps = all.every(({ kind, samples }) => kind === 'grasp' || samples.length === 0);
+  return grasps && stages.some(({ samples }) => samples.length > 0) ? [stages, WAY] : [all, PRESSURE];
 }
 
 // What all samples know as numbers, the most telling first.

@@ -172,6 +172,15 @@ static void table_write(struct html *html, void *context) {
 
 /* ---- pictures ---------------------------------------------------------------------------- */
 
+static size_t count_kind(json_t *jobs, const char *kind) {
+  size_t index, count = 0;
+  json_t *job;
+  json_array_foreach(jobs, index, job) {
+    count += strcmp(json_string_value(json_object_get(job, "kind")), kind) == 0;
+  }
+  return count;
+}
+
 static void curves_write(struct html *html, void *context) {
   const struct compare_page *page = context;
   if (!page->view) {
@@ -185,7 +194,11 @@ static void curves_write(struct html *html, void *context) {
   html_leaf(html, "h2", "Curves", "id", "curves-title", NULL);
   html_close(html);
   html_open(html, "figure", "class", "plot wide-plot", NULL);
-  page_picture(html, page->plot, "Curves of the jobs against pressure", 1000, 500);
+  bool grasps = count_kind(json_object_get(page->view, "jobs"), "grasp") == page->count;
+  page_picture(html, page->plot,
+               grasps ? "Forces of the grasps against displacement"
+                      : "Curves of the jobs against pressure",
+               1000, 500);
   html_close(html);
   html_close(html);
 }
@@ -207,15 +220,6 @@ static void shape_write(struct html *html, const json_t *job, bool grasp) {
   html_leaf(html, "span", "", "class", "at muted", NULL);
   html_close(html);
   html_close(html);
-}
-
-static size_t count_kind(json_t *jobs, const char *kind) {
-  size_t index, count = 0;
-  json_t *job;
-  json_array_foreach(jobs, index, job) {
-    count += strcmp(json_string_value(json_object_get(job, "kind")), kind) == 0;
-  }
-  return count;
 }
 
 static void shapes_write(struct html *html, void *context) {

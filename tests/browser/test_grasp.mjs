@@ -6,7 +6,7 @@ import { lab } from './driver.mjs';
 const BY_SOFTWARE = /GPU stall due to ReadPixels/;
 
 // A short finger that presses on a bar, which is drawn from under it.
-function grasp(name) {
+function grasp(name, friction) {
   return {
     kind: 'grasp',
     name,
@@ -18,7 +18,7 @@ function grasp(name) {
     load: { pressure: { to: '25 kPa', steps: 3 } },
     object: {
       shape: { form: 'cylinder', diameter: '20 mm', length: '40 mm' },
-      position: ['28 mm', 0, '-11 mm'], axis: [0, 1, 0], friction: 0.9,
+      position: ['28 mm', 0, '-11 mm'], axis: [0, 1, 0], friction,
     },
     grasp: { pull: { direction: [1, 0, 0], distance: '3 mm', steps: 6 } },
     accuracy: 'draft',
@@ -79,11 +79,40 @@ async function testReading({ open, check }) {
   await visit.close();
 }
 
+// The picture that stands for the chart without scripts.
+async function testCompareReading({ open, check }) {
+  const visit = await open('/compare?jobs=1,2', { script: false });
+  const picture = visit.page.locator('#curves img');
+  check('the picture is one of forces', await picture.getAttribute('alt') === 'Forces of the grasps against displacement');
+  check('it is drawn', await picture.evaluate(async (image) => {
+    await image.decode();
+    return image.naturalWidth > 800;
+  }));
+  await visit.quiet();
+  await visit.close();
+}
+
 async function testCompare({ open, check }) {
   const visit = await open('/?compare=1,2');
   await visit.page.click('#compare-button');
   await visit.until('the forces are drawn', () => document.querySelector('#curve-chart canvas'));
   check('over the displacement', /^Grasp force \(N\) against displacement of the object of 2 jobs/.test(
+    await visit.page.getAttribute('#curve-chart', 'aria-label')));
+  const rows = await visit.page.locator('#compare-table tr[data-metric]').evaluateAll((all) => all.map((row) =>
+    [row.dataset.metric, [...row.querySelectorAll('td.number')].map((cell) => parseFloat(cell.textContent))]));
+  const values = Object.fromEntries(rows);
+  check('forces come first', rows.slice(0, 2).map(([name]) => name).join() === 'grasp_force_peak_N,grasp_force_mean_N');
+  for (const name of ['grasp_force_peak_N', 'grasp_force_mean_N', 'normal_force_N', 'contact_area_mm2', 'slip_onset_mm']) {
+    check(`${name} of both`, values[name]?.length === 2 && values[name].every((value) => value > 0));
+  }
+  const [rough, smooth] = values.grasp_force_peak_N;
+  check('more friction holds better', rough > 1.2 * smooth);
+  check('by how much is said', /^−\d+\.\d\s%$/.test(
+    await visit.page.textContent('tr[data-metric=grasp_force_peak_N] .difference')));
+  check('so is what they differ in', /0\.9.*0\.4/.test(
+    await visit.page.textContent('tr[data-pointer="/object/friction"]')));
+  await visit.page.selectOption('#curve-key', 'contact_area_mm2');
+  check('other quantities can be drawn', /^Contact area \(mm²\) against displacement/.test(
     await visit.page.getAttribute('#curve-chart', 'aria-label')));
   check('grasps are side by side', await visit.page.locator('.small-plot img').count() === 2);
   await visit.accessible('the comparison is accessible');
@@ -120,13 +149,14 @@ async function testSizes({ open }) {
 
 await lab(async (tools) => {
   const { daemon, check } = tools;
-  for (const name of ['a bar', 'the same bar']) { // the second takes the result of the first
-    const job = await daemon.submit(grasp(name));
+  for (const [name, friction] of [['a rough bar', 0.9], ['a smooth bar', 0.4]]) {
+    const job = await daemon.submit(grasp(name, friction));
     check(`${name}: it is solved`, job.state === 'succeeded', job.message);
   }
   await testView(tools);
   await testReading(tools);
   await testCompare(tools);
+  await testCompareReading(tools);
   await testExample(tools);
   await testSizes(tools);
 }, { options: ['--workers', '1'] });
