@@ -179,6 +179,53 @@ START_TEST(a_blocked_tip_pushes_more_the_nearer_the_plate) {
 }
 END_TEST
 
+/* A thin rod under the tip, from which the tip slips at once when the rod is drawn on: that part,
+ * and only that, is marked as motion, and what comes to rest is the finger by itself. */
+START_TEST(what_slips_off_at_once_is_followed_in_motion) {
+  const char *const rod[][2] = {
+      {"/object/shape", "{\"form\": \"cylinder\", \"diameter\": \"4 mm\", \"length\": \"40 mm\"}"},
+      {"/object/position", "[\"38 mm\", 0, \"-2.1 mm\"]"},
+      {"/object/axis", "[0, 1, 0]"},
+      {"/object/friction", "0.3"},
+      {"/load/pressure/to", "\"60 kPa\""},
+      {"/mesh/height", "2"},
+      {"/grasp/pull/distance", "\"3 mm\""},
+      {"/grasp/numerics/longest_step", "\"0.2 mm\""},
+      {NULL, NULL}};
+  const char *const alone[][2] = {{"/object/position", "[0, 0, \"-60 mm\"]"},
+                                  {"/load/pressure/to", "\"60 kPa\""},
+                                  {"/mesh/height", "2"},
+                                  {"/grasp/pull", NULL},
+                                  {NULL, NULL}};
+  json_t *document = solve(rod), *unhindered = solve(alone), *sample;
+  const json_t *samples = json_object_get(document, "samples");
+  size_t index, moved = 0, first = 0;
+  json_array_foreach(samples, index, sample) {
+    if (json_is_true(json_object_get(sample, "dynamic"))) {
+      first = moved++ == 0 ? index : first;
+    }
+  }
+  ck_assert_uint_gt(moved, 0);
+  ck_assert_uint_lt(moved, json_array_size(samples) / 4);
+  ck_assert_uint_gt(first, 0);
+  const json_t *before = json_array_get(samples, first - 1),
+               *after = json_array_get(samples, first);
+  ck_assert_str_eq(json_string_value(json_object_get(after, "stage")), "pull");
+  ck_assert_double_gt(json_number_value(json_object_get(before, "normal_force_N")), 0.05);
+  ck_assert_double_eq(json_number_value(json_object_get(after, "normal_force_N")), 0);
+  ck_assert_double_eq_tol(last(document, "bending_angle_deg"),
+                          last(unhindered, "bending_angle_deg"), 0.01);
+  ck_assert_double_gt(metric(document, "jumps"), 0);
+  ck_assert_double_gt(metric(document, "dynamic_share_pct"), 0);
+  ck_assert_double_lt(metric(document, "dynamic_share_pct"), 10);
+  const char *warning = json_string_value(json_array_get(json_object_get(document, "warnings"), 0));
+  ck_assert_ptr_nonnull(strstr(warning, "marked as dynamic"));
+  ck_assert_str_eq(json_string_value(json_object_get(document, "outcome")), "released");
+  json_decref(document);
+  json_decref(unhindered);
+}
+END_TEST
+
 START_TEST(an_object_inside_the_body_is_refused_with_place_and_depth) {
   const char *const edits[][2] = {{"/object/position", "[0, 0, \"2.5 mm\"]"}, {NULL, NULL}};
   struct error error;
@@ -248,6 +295,7 @@ int main(void) {
   tcase_add_test(tcase, what_is_not_touched_feels_nothing);
   tcase_add_test(tcase, a_symmetric_gripper_is_its_finger_times_their_number);
   tcase_add_test(tcase, a_blocked_tip_pushes_more_the_nearer_the_plate);
+  tcase_add_test(tcase, what_slips_off_at_once_is_followed_in_motion);
   tcase_add_test(tcase, an_object_inside_the_body_is_refused_with_place_and_depth);
   tcase_add_test(tcase, a_grasp_without_time_tells_how_far_it_came);
   tcase_add_test(tcase, fingers_are_summed_where_either_has_a_state);
