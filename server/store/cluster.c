@@ -12,6 +12,7 @@
 struct rows {
   void *list;
   size_t count, room, size;
+  void (*take)(sqlite3_stmt *statement, void *row);
 };
 
 /* One more row, cleared; NULL without memory. */
@@ -30,40 +31,36 @@ static void *rows_add(struct rows *rows) {
   return row;
 }
 
-/* Reads a query with the parameter `id` (0: it has none) into a list. */
-static enum status rows_read(struct store *store, const char *sql, int64_t id, struct rows *rows,
-                             void (*take)(sqlite3_stmt *statement, void *row),
-                             struct error *error) {
-  sqlite3_stmt *statement = NULL;
-  int row = 1;
-  sqlite3 *db = store_read_begin(store, error);
-  if (!db) {
-    return STATUS_IO;
+static enum status take_row(sqlite3_stmt *statement, void *context, struct error *error) {
+  struct rows *rows = context;
+  void *row = rows_add(rows);
+  if (!row) {
+    return error_set(error, STATUS_NO_MEMORY, NULL, "No memory for the batches of a cluster.");
   }
-  enum status status = id != 0 ? sql_prepare(db, &statement, error, sql, "i", id)
-                               : sql_prepare(db, &statement, error, sql, "");
-  while (status == STATUS_OK && (status = sql_step(statement, &row, error)) == STATUS_OK && row) {
-    void *next = rows_add(rows);
-    if (!next) {
-      status = error_set(error, STATUS_NO_MEMORY, NULL, "No memory for the batches of a cluster.");
-      break;
-    }
-    take(statement, next);
-  }
-  sql_done(statement);
-  store_read_end(store, db);
+  rows->take(statement, row);
+  return STATUS_OK;
+}
+
+/* Hands the list over when it was read, else frees it. */
+static enum status rows_end(struct rows *rows, enum status status, size_t *count) {
   if (status != STATUS_OK) {
     free(rows->list);
-    *rows = (struct rows){.size = rows->size};
+    *rows = (struct rows){0};
   }
+  *count = rows->count;
   return status;
 }
 
 /* ---- batches ------------------------------------------------------------------------------ */
 
+static enum status take_name(sqlite3_stmt *row, void *context, struct error *error) {
+  struct cluster_batch *batch = context;
+  (void)error;
+  snprintf(batch->name, sizeof batch->name, "%s", sql_text(row, 0));
+  return STATUS_OK;
+}
+
 static enum status batch_insert(sqlite3 *db, struct cluster_batch *batch, struct error *error) {
-  sqlite3_stmt *statement;
-  int row = 0;
   enum status status = sql_run(db, error,
                                "INSERT INTO cluster_batch (name, partition, created_ms) "
                                "VALUES (lower(hex(randomblob(16))), ?, ?)",
@@ -72,18 +69,10 @@ static enum status batch_insert(sqlite3 *db, struct cluster_batch *batch, struct
     return status;
   }
   batch->id = sqlite3_last_insert_rowid(db);
-  status = sql_prepare(db, &statement, error,
-                       "UPDATE cluster_batch SET name = (SELECT name FROM cluster_identity) || "
-                       "'-' || id || '-' || lower(hex(randomblob(4))) WHERE id = ? RETURNING name",
-                       "i", batch->id);
-  if (status == STATUS_OK) {
-    status = sql_step(statement, &row, error);
-  }
-  if (status == STATUS_OK && row) {
-    snprintf(batch->name, sizeof batch->name, "%s", sql_text(statement, 0));
-  }
-  sql_done(statement);
-  return status;
+  return sql_each(db, error, take_name, batch,
+                  "UPDATE cluster_batch SET name = (SELECT name FROM cluster_identity) || "
+                  "'-' || id || '-' || lower(hex(randomblob(4))) WHERE id = ? RETURNING name",
+                  "i", batch->id);
 }
 
 enum status store_batch_intend(struct store *store, struct cluster_batch *batch,
@@ -166,14 +155,14 @@ static void take_batch(sqlite3_stmt *statement, void *row) {
 
 enum status store_batches_open(struct store *store, struct cluster_batch **list, size_t *count,
                                struct error *error) {
-  struct rows rows = {.size = sizeof **list};
-  enum status status = rows_read(
-      store,
+  struct rows rows = {.size = sizeof **list, .take = take_batch};
+  enum status status = store_each(
+      store, error, take_row, &rows,
       "SELECT id, name, cluster_job, partition, created_ms, (SELECT count(*) FROM cluster_task "
       "WHERE batch_id = cluster_batch.id) FROM cluster_batch WHERE ended_ms IS NULL ORDER BY id",
-      0, &rows, take_batch, error);
+      "");
+  status = rows_end(&rows, status, count);
   *list = rows.list;
-  *count = rows.count;
   return status;
 }
 
@@ -192,42 +181,33 @@ static void take_attempt(sqlite3_stmt *statement, void *row) {
 
 enum status store_batch_attempts(struct store *store, int64_t id, struct cluster_attempt **list,
                                  size_t *count, struct error *error) {
-  struct rows rows = {.size = sizeof **list};
+  struct rows rows = {.size = sizeof **list, .take = take_attempt};
   enum status status =
-      rows_read(store,
-                "SELECT job_id, number, task, place, job.timeout_s, job.memory_bytes, job.state "
-                "FROM attempt JOIN job ON job.id = job_id AND job.attempt = number "
-                "WHERE batch_id = ? AND outcome = '' ORDER BY task, place",
-                id, &rows, take_attempt, error);
+      store_each(store, error, take_row, &rows,
+                 "SELECT job_id, number, task, place, job.timeout_s, job.memory_bytes, job.state "
+                 "FROM attempt JOIN job ON job.id = job_id AND job.attempt = number "
+                 "WHERE batch_id = ? AND outcome = '' ORDER BY task, place",
+                 "i", id);
+  status = rows_end(&rows, status, count);
   *list = rows.list;
-  *count = rows.count;
   return status;
+}
+
+/* A text column into CLUSTER_WORD_SIZE characters. */
+static enum status take_word(sqlite3_stmt *row, void *word, struct error *error) {
+  (void)error;
+  snprintf(word, CLUSTER_WORD_SIZE, "%s", sql_text(row, 0));
+  return STATUS_OK;
 }
 
 enum status store_job_partition(struct store *store, int64_t id, char partition[CLUSTER_WORD_SIZE],
                                 struct error *error) {
-  sqlite3_stmt *statement = NULL;
-  int row = 0;
-  sqlite3 *db = store_read_begin(store, error);
   partition[0] = '\0';
-  if (!db) {
-    return STATUS_IO;
-  }
-  enum status status =
-      sql_prepare(db, &statement, error,
-                  "SELECT value FROM job JOIN job_label ON job_label.name = 'partition' AND "
-                  "job_label.job_id IN (job.id, job.study_id) WHERE job.id = ? "
-                  "ORDER BY job_label.job_id DESC LIMIT 1",
-                  "i", id);
-  if (status == STATUS_OK) {
-    status = sql_step(statement, &row, error);
-  }
-  if (status == STATUS_OK && row) {
-    snprintf(partition, CLUSTER_WORD_SIZE, "%s", sql_text(statement, 0));
-  }
-  sql_done(statement);
-  store_read_end(store, db);
-  return status;
+  return store_each(store, error, take_word, partition,
+                    "SELECT value FROM job JOIN job_label ON job_label.name = 'partition' AND "
+                    "job_label.job_id IN (job.id, job.study_id) WHERE job.id = ? "
+                    "ORDER BY job_label.job_id DESC LIMIT 1",
+                    "i", id);
 }
 
 /* The jobs of a withdrawal: ?1 is the job or study. */

@@ -8,6 +8,7 @@
 #include <stdbool.h>
 
 #include "server/store/meter.h"
+#include "server/store/sql.h"
 #include "server/store/store.h"
 
 struct group;
@@ -45,6 +46,13 @@ enum status store_connect(const char *path, int flags, const char *settings, sql
  * is read until store_read_end is one consistent state. NULL and *error on failure. */
 sqlite3 *store_read_begin(struct store *store, struct error *error);
 void store_read_end(struct store *store, sqlite3 *reader);
+
+/* Reads a query, as sql_each does, by a connection for reading of its own. */
+enum status store_each(struct store *store, struct error *error, sql_taker *take, void *context,
+                       const char *text, const char *types, ...);
+
+/* A sql_taker of rows (state, number of jobs) into int64_t counts[JOB_STATE_COUNT]. */
+enum status store_take_count(sqlite3_stmt *row, void *counts, struct error *error);
 
 /* Locks the writer and opens a transaction. On failure nothing is locked. */
 enum status store_write_begin(struct store *store, struct error *error);

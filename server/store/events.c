@@ -23,21 +23,9 @@ void store_watch_events(struct store *store, void (*committed)(void *context), v
 }
 
 enum status store_event_last(struct store *store, int64_t *id, struct error *error) {
-  sqlite3 *db = store_read_begin(store, error);
-  if (!db) {
-    return STATUS_IO;
-  }
-  sqlite3_stmt *statement;
-  int row = 0;
-  enum status status =
-      sql_prepare(db, &statement, error, "SELECT coalesce(max(id), 0) FROM event", "");
-  if (status == STATUS_OK) {
-    status = sql_step(statement, &row, error);
-    *id = row ? sqlite3_column_int64(statement, 0) : 0;
-  }
-  sql_done(statement);
-  store_read_end(store, db);
-  return status;
+  *id = 0;
+  return store_each(store, error, sql_take_integer, id, "SELECT coalesce(max(id), 0) FROM event",
+                    "");
 }
 
 enum status store_events(struct store *store, int64_t after, int limit,
@@ -74,25 +62,14 @@ enum status store_events(struct store *store, int64_t after, int limit,
   return status;
 }
 
+static enum status take_labels(sqlite3_stmt *row, void *labels, struct error *error) {
+  const char *text = sql_text(row, 0);
+  return json_text_read(text, strlen(text), labels, error);
+}
+
 enum status store_labels(struct store *store, int64_t id, json_t **labels, struct error *error) {
-  sqlite3 *db = store_read_begin(store, error);
-  if (!db) {
-    return STATUS_IO;
-  }
-  sqlite3_stmt *statement;
-  int row = 0;
   *labels = NULL;
-  enum status status =
-      sql_prepare(db, &statement, error,
-                  "SELECT json_group_object(name, value) FROM job_label WHERE job_id = ?", "i", id);
-  if (status == STATUS_OK) {
-    status = sql_step(statement, &row, error);
-  }
-  if (status == STATUS_OK && row) {
-    const char *text = sql_text(statement, 0);
-    status = json_text_read(text, strlen(text), labels, error);
-  }
-  sql_done(statement);
-  store_read_end(store, db);
-  return status;
+  return store_each(store, error, take_labels, labels,
+                    "SELECT json_group_object(name, value) FROM job_label WHERE job_id = ?", "i",
+                    id);
 }

@@ -164,23 +164,18 @@ done:
   return status;
 }
 
+enum status store_take_count(sqlite3_stmt *row, void *counts, struct error *error) {
+  enum job_state state;
+  (void)error;
+  if (job_state_parse(sql_text(row, 0), &state)) {
+    ((int64_t *)counts)[state] = sqlite3_column_int64(row, 1);
+  }
+  return STATUS_OK;
+}
+
 enum status store_counts(struct store *store, int64_t counts[JOB_STATE_COUNT],
                          struct error *error) {
   memset(counts, 0, JOB_STATE_COUNT * sizeof *counts);
-  sqlite3 *db = store_read_begin(store, error);
-  if (!db) {
-    return STATUS_IO;
-  }
-  sqlite3_stmt *statement;
-  int row = 0;
-  enum status status = sql_prepare(db, &statement, error, "SELECT state, jobs FROM job_count", "");
-  while (status == STATUS_OK && (status = sql_step(statement, &row, error)) == STATUS_OK && row) {
-    enum job_state state;
-    if (job_state_parse(sql_text(statement, 0), &state)) {
-      counts[state] = sqlite3_column_int64(statement, 1);
-    }
-  }
-  sqlite3_finalize(statement);
-  store_read_end(store, db);
-  return status;
+  return store_each(store, error, store_take_count, counts, "SELECT state, jobs FROM job_count",
+                    "");
 }

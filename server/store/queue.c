@@ -173,22 +173,7 @@ enum status store_claim_for(struct store *store, struct store_taste taste, struc
 }
 
 enum status store_ready(struct store *store, int64_t *count, struct error *error) {
-  sqlite3_stmt *statement = NULL;
-  int row = 0;
-  sqlite3 *db = store_read_begin(store, error);
   *count = 0;
-  if (!db) {
-    return STATUS_IO;
-  }
-  enum status status =
-      sql_prepare(db, &statement, error, "SELECT coalesce(sum(ready), 0) FROM submitter_queue", "");
-  if (status == STATUS_OK) {
-    status = sql_step(statement, &row, error);
-  }
-  if (status == STATUS_OK && row) {
-    *count = sqlite3_column_int64(statement, 0);
-  }
-  sql_done(statement);
-  store_read_end(store, db);
-  return status;
+  return store_each(store, error, sql_take_integer, count,
+                    "SELECT coalesce(sum(ready), 0) FROM submitter_queue", "");
 }

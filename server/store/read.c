@@ -20,21 +20,24 @@ void job_record_clear(struct job_record *record) {
   *record = (struct job_record){0};
 }
 
+/* A JSON value that rows are added to. */
+struct gathering {
+  json_t *into;
+  void (*take)(json_t *into, sqlite3_stmt *row);
+};
+
+static enum status gather(sqlite3_stmt *row, void *context, struct error *error) {
+  const struct gathering *gathering = context;
+  (void)error;
+  gathering->take(gathering->into, row);
+  return STATUS_OK;
+}
+
 /* Reads a query of one job into a JSON value: take() adds one row to it. */
 static enum status rows_read(sqlite3 *db, const char *sql, int64_t id, json_t *into,
                              void (*take)(json_t *into, sqlite3_stmt *row), struct error *error) {
-  sqlite3_stmt *statement;
-  enum status status = sql_prepare(db, &statement, error, sql, "i", id);
-  int row = 1;
-  while (status == STATUS_OK) {
-    status = sql_step(statement, &row, error);
-    if (status != STATUS_OK || !row) {
-      break;
-    }
-    take(into, statement);
-  }
-  sql_done(statement);
-  return status;
+  struct gathering gathering = {into, take};
+  return sql_each(db, error, gather, &gathering, sql, "i", id);
 }
 
 static void take_text(json_t *into, sqlite3_stmt *row) {
@@ -193,39 +196,38 @@ enum status store_job(struct store *store, int64_t id, struct job_record *record
   return status;
 }
 
+/* Up to two texts of a row. */
+struct texts {
+  char **first, **second; /* the latter may be NULL */
+  bool found;
+};
+
+static enum status take_texts(sqlite3_stmt *row, void *context, struct error *error) {
+  struct texts *texts = context;
+  char *one = sql_text_copy(row, 0);
+  char *two = texts->second ? sql_text_copy(row, 1) : NULL;
+  if (!one || (texts->second && !two)) {
+    free(one);
+    free(two);
+    return error_set(error, STATUS_NO_MEMORY, NULL, "No memory for a document.");
+  }
+  *texts->first = one;
+  if (texts->second) {
+    *texts->second = two;
+  }
+  texts->found = true;
+  return STATUS_OK;
+}
+
 /* Reads up to two texts of one row. STATUS_NOT_FOUND with `missing` when there is no row. */
 static enum status texts_read(struct store *store, const char *sql, int64_t id, char **first,
                               char **second, const char *missing, struct error *error) {
-  sqlite3 *db = store_read_begin(store, error);
-  if (!db) {
-    return STATUS_IO;
-  }
-  sqlite3_stmt *statement;
-  int row = 0;
-  enum status status = sql_prepare(db, &statement, error, sql, "i", id);
-  if (status == STATUS_OK) {
-    status = sql_step(statement, &row, error);
-  }
-  if (status == STATUS_OK && !row) {
-    status =
-        error_set(error, STATUS_NOT_FOUND, NULL, "There is no %s %lld.", missing, (long long)id);
-  } else if (status == STATUS_OK) {
-    char *one = sql_text_copy(statement, 0);
-    char *two = second ? sql_text_copy(statement, 1) : NULL;
-    if (!one || (second && !two)) {
-      free(one);
-      free(two);
-      status = error_set(error, STATUS_NO_MEMORY, NULL, "No memory for a document.");
-    } else {
-      *first = one;
-      if (second) {
-        *second = two;
-      }
-    }
-  }
-  sql_done(statement);
-  store_read_end(store, db);
-  return status;
+  struct texts texts = {.first = first, .second = second};
+  enum status status = store_each(store, error, take_texts, &texts, sql, "i", id);
+  return status == STATUS_OK && !texts.found
+             ? error_set(error, STATUS_NOT_FOUND, NULL, "There is no %s %lld.", missing,
+                         (long long)id)
+             : status;
 }
 
 enum status store_document(struct store *store, int64_t id, char **text, struct error *error) {
@@ -239,25 +241,14 @@ enum status store_result(struct store *store, int64_t id, char **text, char **di
 }
 
 enum status store_artifact(struct store *store, int64_t id, const char *name, struct error *error) {
-  sqlite3 *db = store_read_begin(store, error);
-  if (!db) {
-    return STATUS_IO;
-  }
-  sqlite3_stmt *statement;
-  int row = 0;
+  int64_t found = 0;
   enum status status =
-      sql_prepare(db, &statement, error, "SELECT 1 FROM artifact WHERE job_id = ? AND name = ?",
-                  "it", id, name);
-  if (status == STATUS_OK) {
-    status = sql_step(statement, &row, error);
-  }
-  if (status == STATUS_OK && !row) {
-    status = error_set(error, STATUS_NOT_FOUND, NULL, "Job %lld has no artifact %.100s.",
-                       (long long)id, name);
-  }
-  sql_done(statement);
-  store_read_end(store, db);
-  return status;
+      store_each(store, error, sql_take_integer, &found,
+                 "SELECT 1 FROM artifact WHERE job_id = ? AND name = ?", "it", id, name);
+  return status == STATUS_OK && !found
+             ? error_set(error, STATUS_NOT_FOUND, NULL, "Job %lld has no artifact %.100s.",
+                         (long long)id, name)
+             : status;
 }
 
 /* Reads rows of a job that must exist into *into, which becomes the caller's. */

@@ -1,6 +1,7 @@
 #include "server/store/retention.h"
 
 #include <stdio.h>
+#include <string.h>
 
 #include "server/base/clock.h"
 #include "server/store/connection.h"
@@ -8,38 +9,29 @@
 
 #define WITH_FILES "finished_ms IS NOT NULL AND files_removed_ms IS NULL AND attempt > 0"
 
-/* Reads rows (id, attempt, bytes) into the list. */
-static enum status files_read(sqlite3_stmt *statement, struct job_files *list, size_t room,
-                              size_t *count, struct error *error) {
-  int row = 1;
-  enum status status = STATUS_OK;
-  while (*count < room && (status = sql_step(statement, &row, error)) == STATUS_OK && row) {
-    list[(*count)++] = (struct job_files){.job_id = sqlite3_column_int64(statement, 0),
-                                          .attempts = sqlite3_column_int64(statement, 1),
-                                          .bytes = sqlite3_column_int64(statement, 2)};
-  }
-  return status;
+/* Jobs and their files; a query is limited to the room. */
+struct files_list {
+  struct job_files *list;
+  size_t *count;
+};
+
+static enum status take_files(sqlite3_stmt *row, void *context, struct error *error) {
+  struct files_list *files = context;
+  (void)error;
+  files->list[(*files->count)++] = (struct job_files){.job_id = sqlite3_column_int64(row, 0),
+                                                      .attempts = sqlite3_column_int64(row, 1),
+                                                      .bytes = sqlite3_column_int64(row, 2)};
+  return STATUS_OK;
 }
 
 enum status store_files_unmeasured(struct store *store, struct job_files *list, size_t room,
                                    size_t *count, struct error *error) {
-  struct error reason = {.status = STATUS_IO};
+  struct files_list files = {list, count};
   *count = 0;
-  sqlite3 *db = store_read_begin(store, &reason);
-  if (!db) {
-    return error_set(error, reason.status, NULL, "%s", reason.message);
-  }
-  sqlite3_stmt *statement;
-  enum status status = sql_prepare(db, &statement, error,
-                                   "SELECT id, attempt, 0 FROM job INDEXED BY job_with_files "
-                                   "WHERE " WITH_FILES " AND files_bytes IS NULL LIMIT ?",
-                                   "i", (int64_t)room);
-  if (status == STATUS_OK) {
-    status = files_read(statement, list, room, count, error);
-    sql_done(statement);
-  }
-  store_read_end(store, db);
-  return status;
+  return store_each(store, error, take_files, &files,
+                    "SELECT id, attempt, 0 FROM job INDEXED BY job_with_files "
+                    "WHERE " WITH_FILES " AND files_bytes IS NULL LIMIT ?",
+                    "i", (int64_t)room);
 }
 
 enum status store_files_measured(struct store *store, const struct job_files *list, size_t count,
@@ -56,35 +48,22 @@ enum status store_files_measured(struct store *store, const struct job_files *li
 }
 
 static enum status files_sum(sqlite3 *db, int64_t *bytes, struct error *error) {
-  sqlite3_stmt *statement;
-  int row = 0;
-  enum status status = sql_prepare(db, &statement, error,
-                                   "SELECT coalesce(sum(files_bytes), 0) FROM job INDEXED BY "
-                                   "job_with_files WHERE " WITH_FILES,
-                                   "");
-  if (status == STATUS_OK) {
-    status = sql_step(statement, &row, error);
-    *bytes = sqlite3_column_int64(statement, 0);
-    sql_done(statement);
-  }
-  return status;
+  return sql_each(db, error, sql_take_integer, bytes,
+                  "SELECT coalesce(sum(files_bytes), 0) FROM job INDEXED BY "
+                  "job_with_files WHERE " WITH_FILES,
+                  "");
 }
 
 /* The oldest jobs with files that ended before a moment (0: whenever). */
 static enum status files_oldest(sqlite3 *db, int64_t before_ms, struct job_files *list, size_t room,
                                 size_t *count, struct error *error) {
-  sqlite3_stmt *statement;
-  enum status status =
-      sql_prepare(db, &statement, error,
+  struct files_list files = {list, count};
+  *count = 0;
+  return sql_each(db, error, take_files, &files,
                   "SELECT id, attempt, coalesce(files_bytes, 0) FROM job INDEXED BY job_with_files "
                   "WHERE " WITH_FILES " AND (? = 0 OR finished_ms < ?) "
                   "ORDER BY finished_ms, id LIMIT ?",
                   "iii", before_ms, before_ms, (int64_t)room);
-  if (status == STATUS_OK) {
-    status = files_read(statement, list, room, count, error);
-    sql_done(statement);
-  }
-  return status;
 }
 
 /* Lists the jobs whose files are to go by one of the limits. */
@@ -143,48 +122,37 @@ enum status store_files_expire(struct store *store, const struct retention *limi
 
 enum status store_files_kept(struct store *store, int64_t job_id, int64_t attempt, bool *kept,
                              struct error *error) {
-  struct error reason = {.status = STATUS_IO};
-  sqlite3 *db = store_read_begin(store, &reason);
-  if (!db) {
-    return error_set(error, reason.status, NULL, "%s", reason.message);
-  }
-  sqlite3_stmt *statement;
-  int row = 0;
-  enum status status = sql_prepare(
-      db, &statement, error,
+  int64_t found = 0;
+  enum status status = store_each(
+      store, error, sql_take_integer, &found,
       "SELECT 1 FROM job WHERE id = ? AND attempt >= ? AND files_removed_ms IS NULL UNION ALL "
       "SELECT 1 FROM job WHERE reused_from = ? AND files_removed_ms IS NULL AND NOT EXISTS "
       "(SELECT 1 FROM job WHERE id = ?) LIMIT 1",
       "iiii", job_id, attempt, job_id, job_id);
-  if (status == STATUS_OK) {
-    status = sql_step(statement, &row, error);
-    sql_done(statement);
-  }
-  store_read_end(store, db);
-  *kept = row != 0;
+  *kept = found != 0;
   return status;
+}
+
+struct removal {
+  int64_t ms;
+  char why[8];
+};
+
+static enum status take_removal(sqlite3_stmt *row, void *context, struct error *error) {
+  struct removal *removal = context;
+  (void)error;
+  removal->ms = sqlite3_column_int64(row, 0);
+  snprintf(removal->why, sizeof removal->why, "%s", sql_text(row, 1));
+  return STATUS_OK;
 }
 
 enum status store_files_removed(struct store *store, int64_t job_id, int64_t *removed_ms,
                                 char why[8], struct error *error) {
-  struct error reason = {.status = STATUS_IO};
-  sqlite3 *db = store_read_begin(store, &reason);
-  if (!db) {
-    return error_set(error, reason.status, NULL, "%s", reason.message);
-  }
-  sqlite3_stmt *statement;
-  int row = 0;
-  enum status status = sql_prepare(
-      db, &statement, error,
+  struct removal removal = {0};
+  enum status status = store_each(
+      store, error, take_removal, &removal,
       "SELECT coalesce(files_removed_ms, 0), files_removed_why FROM job WHERE id = ?", "i", job_id);
-  if (status == STATUS_OK) {
-    status = sql_step(statement, &row, error);
-  }
-  if (status == STATUS_OK) {
-    *removed_ms = row ? sqlite3_column_int64(statement, 0) : 0;
-    snprintf(why, 8, "%s", row ? sql_text(statement, 1) : "");
-  }
-  sql_done(statement);
-  store_read_end(store, db);
+  *removed_ms = removal.ms;
+  memcpy(why, removal.why, sizeof removal.why);
   return status;
 }

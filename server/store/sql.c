@@ -104,6 +104,39 @@ enum status sql_run(sqlite3 *db, struct error *error, const char *text, const ch
   return status;
 }
 
+enum status sql_each_list(sqlite3 *db, struct error *error, sql_taker *take, void *context,
+                          const char *text, const char *types, va_list arguments) {
+  sqlite3_stmt *statement;
+  int row = 1;
+  enum status status = sql_prepare_list(db, &statement, error, text, types, arguments);
+  while (status == STATUS_OK && (status = sql_step(statement, &row, error)) == STATUS_OK && row) {
+    status = take(statement, context, error);
+  }
+  sql_done(statement);
+  return status;
+}
+
+enum status sql_each(sqlite3 *db, struct error *error, sql_taker *take, void *context,
+                     const char *text, const char *types, ...) {
+  va_list arguments;
+  va_start(arguments, types);
+  enum status status = sql_each_list(db, error, take, context, text, types, arguments);
+  va_end(arguments);
+  return status;
+}
+
+enum status sql_take_integer(sqlite3_stmt *row, void *integer, struct error *error) {
+  (void)error;
+  *(int64_t *)integer = sqlite3_column_int64(row, 0);
+  return STATUS_OK;
+}
+
+enum status sql_take_number(sqlite3_stmt *row, void *number, struct error *error) {
+  (void)error;
+  *(double *)number = sqlite3_column_double(row, 0);
+  return STATUS_OK;
+}
+
 void sql_done(sqlite3_stmt *statement) {
   if (statement) {
     sqlite3_reset(statement);

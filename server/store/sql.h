@@ -3,6 +3,7 @@
 #define PNEULAB_STORE_SQL_H
 
 #include <sqlite3.h>
+#include <stdarg.h>
 #include <stdint.h>
 
 #include "solver/base/error.h"
@@ -32,6 +33,20 @@ void sql_close(sqlite3 *db);
 
 /* Prepares, binds as above and runs a statement that returns no rows. */
 enum status sql_run(sqlite3 *db, struct error *error, const char *text, const char *types, ...);
+
+/* Takes a row of a query. Any status but STATUS_OK ends the reading. */
+typedef enum status sql_taker(sqlite3_stmt *row, void *context, struct error *error);
+
+/* Prepares and binds as above, and hands each row to the taker. Returns the first status that is
+ * not STATUS_OK. */
+enum status sql_each(sqlite3 *db, struct error *error, sql_taker *take, void *context,
+                     const char *text, const char *types, ...);
+enum status sql_each_list(sqlite3 *db, struct error *error, sql_taker *take, void *context,
+                          const char *text, const char *types, va_list arguments);
+
+/* Takers of the first column of one row: an int64_t, or a double. */
+enum status sql_take_integer(sqlite3_stmt *row, void *integer, struct error *error);
+enum status sql_take_number(sqlite3_stmt *row, void *number, struct error *error);
 
 /* One step. *row tells whether there is a row to read. */
 enum status sql_step(sqlite3_stmt *statement, int *row, struct error *error);

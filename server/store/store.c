@@ -176,6 +176,21 @@ void store_read_end(struct store *store, sqlite3 *reader) {
   reader_release(store, reader);
 }
 
+enum status store_each(struct store *store, struct error *error, sql_taker *take, void *context,
+                       const char *text, const char *types, ...) {
+  struct error reason = {.status = STATUS_IO};
+  sqlite3 *db = store_read_begin(store, &reason);
+  if (!db) {
+    return error_set(error, reason.status, NULL, "%s", reason.message);
+  }
+  va_list arguments;
+  va_start(arguments, types);
+  enum status status = sql_each_list(db, error, take, context, text, types, arguments);
+  va_end(arguments);
+  store_read_end(store, db);
+  return status;
+}
+
 enum status store_write_begin(struct store *store, struct error *error) {
   int64_t since_us = clock_monotonic_us();
   pthread_mutex_lock(&store->writer_mutex);
