@@ -12,6 +12,7 @@
 #include "server/auth/limiter.h"
 #include "server/auth/tokens.h"
 #include "server/base/file.h"
+#include "tests/unit/suite.h"
 
 static char data[] = "/tmp/pneulab-auth-XXXXXX";
 
@@ -269,9 +270,5 @@ int main(void) {
   tcase_add_test(tests, many_parties_do_not_empty_the_memory);
   tcase_add_test(tests, files_are_opened_below_a_directory_only);
   suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failures = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return suite_run(suite);
 }

@@ -6,6 +6,7 @@
 
 #include "server/http/html.h"
 #include "server/http/page_text.h"
+#include "tests/unit/suite.h"
 
 START_TEST(texts_stay_texts) {
   struct html html;
@@ -90,9 +91,5 @@ int main(void) {
   tcase_add_test(html, quantities_have_units);
   tcase_add_test(html, metrics_in_order);
   suite_add_tcase(suite, html);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return suite_run(suite);
 }

@@ -10,6 +10,7 @@
 #include "server/plot/plot.h"
 #include "tests/unit/plot_pictures.h"
 #include "tests/unit/plot_samples.h"
+#include "tests/unit/suite.h"
 
 #define LONG_NAME                                                                                            \
   "Überlänge 气动 πνεῦμα: a name that goes on and on, as names do when nobody stops them, until " \
@@ -392,9 +393,5 @@ int main(void) {
   tcase_add_test(pictures, the_file_says_where_it_comes_from);
   tcase_add_test(pictures, threads_draw_the_same_picture);
   suite_add_tcase(suite, pictures);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return suite_run(suite);
 }

@@ -6,6 +6,7 @@
 #include "tests/unit/plot_pictures.h"
 #include "tests/unit/plot_samples.h"
 #include "tests/unit/plot_study_samples.h"
+#include "tests/unit/suite.h"
 
 #define LONG_NAME                                                                                  \
   "a member whose name goes on and on, as names do that are made of many values, 12 mm, 3 kPa, "   \
@@ -163,9 +164,5 @@ int main(void) {
   tcase_add_test(tcase, malformed_documents);
   tcase_add_test(tcase, damaged_documents);
   suite_add_tcase(suite, tcase);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return suite_run(suite);
 }

@@ -10,6 +10,7 @@
 #include "server/plot/frames.h"
 #include "tests/unit/plot_grasp_samples.h"
 #include "tests/unit/plot_pictures.h"
+#include "tests/unit/suite.h"
 
 static const int BLUE[3] = {0, 114, 178}, ORANGE[3] = {213, 94, 0}, GREEN[3] = {0, 158, 115};
 
@@ -332,9 +333,5 @@ int main(void) {
   tcase_add_test(pictures, moments_come_back_from_the_file);
   tcase_add_test(pictures, damaged_files);
   suite_add_tcase(suite, pictures);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return suite_run(suite);
 }

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "tests/unit/plot_pictures.h"
+#include "tests/unit/suite.h"
 
 /* The series colours and those of the bands behind them. */
 #define BLUE 0, 114, 178
@@ -188,9 +189,5 @@ int main(void) {
   tcase_add_test(tcase, a_ladder_needs_two_steps);
   tcase_add_test(tcase, control_shows_what_was_asked_for);
   suite_add_tcase(suite, tcase);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return suite_run(suite);
 }

@@ -5,6 +5,7 @@
 
 #include "tests/unit/plot_bistable_samples.h"
 #include "tests/unit/plot_pictures.h"
+#include "tests/unit/suite.h"
 
 #define BLUE 0, 114, 178
 #define ORANGE 213, 94, 0
@@ -178,9 +179,5 @@ int main(void) {
   tcase_add_test(tcase, the_fastest_snap_is_enlarged);
   tcase_add_test(tcase, motion_without_samples);
   suite_add_tcase(suite, tcase);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return suite_run(suite);
 }

@@ -1,12 +1,12 @@
 /* The parts of the plots that have an answer of their own: ticks, places, colours. */
 #include <check.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "server/plot/colour.h"
 #include "server/plot/place.h"
 #include "server/plot/ticks.h"
+#include "tests/unit/suite.h"
 
 START_TEST(ticks_are_round_and_inside) {
   static const double ranges[][2] = {{0, 50},     {-60, 0.3},   {1e-6, 3e-6}, {-1e9, 1e9},
@@ -240,9 +240,5 @@ int main(void) {
   tcase_add_loop_test(parts, faded_colours_end_in_the_paper, 0, THEME_COUNT);
   tcase_add_test(parts, themes_have_names);
   suite_add_tcase(suite, parts);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return suite_run(suite);
 }

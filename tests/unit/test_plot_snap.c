@@ -5,6 +5,7 @@
 
 #include "tests/unit/plot_bistable_samples.h"
 #include "tests/unit/plot_pictures.h"
+#include "tests/unit/suite.h"
 
 /* Colours of series, and of what lies in the meridian. */
 #define BLUE 0, 114, 178
@@ -226,9 +227,5 @@ int main(void) {
   tcase_add_test(tcase, four_designs_in_one_picture);
   tcase_add_test(tcase, elongation_without_a_ratio);
   suite_add_tcase(suite, tcase);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return suite_run(suite);
 }

@@ -13,6 +13,7 @@
 #include "server/exec/progress.h"
 #include "server/http/event_text.h"
 #include "solver/job/json.h"
+#include "tests/unit/suite.h"
 
 /* ---- the command line -------------------------------------------------------------------- */
 
@@ -419,9 +420,5 @@ int main(void) {
   tcase_add_test(tests, filters_of_events);
   tcase_add_test(tests, events_are_written_whole_or_not);
   suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failures = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return suite_run(suite);
 }

@@ -3,7 +3,6 @@
 #include <check.h>
 #include <math.h>
 #include <signal.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -15,6 +14,7 @@
 #include "server/http/encoding.h"
 #include "server/http/guard.h"
 #include "server/http/url.h"
+#include "tests/unit/suite.h"
 
 START_TEST(url_is_cut_and_decoded) {
   char target[] = "/api/v1/jobs/a%20b%C3%A9?label.x=1%2B1+2&flag&empty=";
@@ -363,9 +363,5 @@ int main(void) {
   tcase_add_test(tests, plain_names);
   tcase_add_test(tests, times_are_written);
   suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failures = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return suite_run(suite);
 }

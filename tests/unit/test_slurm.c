@@ -12,6 +12,7 @@
 #include "server/slurm/client.h"
 #include "server/slurm/draft.h"
 #include "server/slurm/words.h"
+#include "tests/unit/suite.h"
 
 static char folder[] = "/tmp/pneulab-slurm-XXXXXX";
 static char *environment[2];
@@ -315,9 +316,5 @@ int main(void) {
   tcase_add_test(programs, cores_are_added_up);
   tcase_add_test(programs, tasks_that_have_ended_need_no_cancel);
   suite_add_tcase(suite, programs);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return suite_run(suite);
 }

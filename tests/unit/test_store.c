@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "tests/unit/store_case.h"
+#include "tests/unit/suite.h"
 
 START_TEST(job_survives_reopening) {
   int64_t id = submit();
@@ -306,9 +307,5 @@ int main(void) {
   tcase_add_test(tests, newer_database_is_refused);
   tcase_add_test(tests, pages_cover_every_job_once);
   suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failures = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return suite_run(suite);
 }

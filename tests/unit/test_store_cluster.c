@@ -3,6 +3,7 @@
 #include "tests/unit/store_case.h"
 
 #include "server/store/cluster.h"
+#include "tests/unit/suite.h"
 
 /* Submits a job that asks for an engine, or for none (NULL). */
 static int64_t submit_for(const char *engine) {
@@ -134,9 +135,5 @@ int main(void) {
   tcase_add_test(cases, no_two_batches_have_one_name);
   tcase_add_test(cases, what_waits_on_a_cluster_is_taken_back);
   suite_add_tcase(suite, cases);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return suite_run(suite);
 }

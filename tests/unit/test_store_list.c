@@ -1,6 +1,7 @@
 /* Lists of jobs: every filter with every order, page by page, against a plain query; and no query
  * that looks through a table. */
 #include "tests/unit/store_case.h"
+#include "tests/unit/suite.h"
 
 enum { JOBS = 240 };
 
@@ -220,9 +221,5 @@ int main(void) {
   tcase_add_test(tests, foreign_cursors_are_refused);
   tcase_add_test(tests, a_cursor_outlives_its_job);
   suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return suite_run(suite);
 }

@@ -1,5 +1,6 @@
 /* The queue of the store: who is next, and databases of the time before it. */
 #include "tests/unit/store_case.h"
+#include "tests/unit/suite.h"
 
 /* A database of version 2 with jobs in every stage keeps them all, and the queue goes on. */
 START_TEST(version_two_is_migrated_with_its_jobs) {
@@ -340,9 +341,5 @@ int main(void) {
   tcase_add_test(tests, equal_jobs_wait_for_the_one_that_runs);
   tcase_add_test(tests, a_patch_changes_name_and_labels);
   suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return suite_run(suite);
 }

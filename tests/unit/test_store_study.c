@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "server/store/study.h"
+#include "tests/unit/suite.h"
 
 static const char study_text[] = "{\"kind\":\"study\",\"name\":\"s\"}";
 
@@ -225,9 +226,5 @@ int main(void) {
   tcase_add_test(tests, members_go_after_their_study);
   tcase_add_test(tests, studies_of_older_databases);
   suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return suite_run(suite);
 }

@@ -2,7 +2,6 @@
  * and searches of functions that are known. */
 #include <check.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "server/study/analysis.h"
@@ -10,6 +9,7 @@
 #include "server/study/spread.h"
 #include "solver/explore/pareto.h"
 #include "solver/explore/random.h"
+#include "tests/unit/suite.h"
 
 enum { PARAMETERS = 3, METRICS = 2, MEMBERS_MAX = 1000 };
 
@@ -408,9 +408,5 @@ int main(void) {
   tcase_add_loop_test(tcase, the_best_design_is_found, 0, 2);
   tcase_set_timeout(tcase, 300);
   suite_add_tcase(suite, tcase);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return suite_run(suite);
 }

@@ -10,6 +10,7 @@
 #include "server/plot/cloud.h"
 #include "tests/unit/plot_pictures.h"
 #include "tests/unit/study_plot_samples.h"
+#include "tests/unit/suite.h"
 
 #define LONG_NAME "a name of sixty characters, as people give who want it exact"
 
@@ -445,9 +446,5 @@ int main(void) {
   tcase_add_test(pictures, cells_of_shapes);
   tcase_add_test(pictures, threads_draw_the_same);
   suite_add_tcase(suite, pictures);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return suite_run(suite);
 }

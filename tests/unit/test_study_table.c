@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "server/study/table.h"
+#include "tests/unit/suite.h"
 
 static void sql(const char *text) {
   char path[100];
@@ -90,9 +91,5 @@ int main(void) {
   tcase_add_test(table, test_rows_and_columns);
   tcase_add_test(table, test_other_jobs);
   suite_add_tcase(suite, table);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return suite_run(suite);
 }
