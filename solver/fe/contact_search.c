@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include "solver/fe/box_tree.h"
+#include "solver/base/box_tree.h"
 #include "solver/fe/contact_internal.h"
 #include "solver/fe/contact_projection.h"
 #include "solver/base/vec3.h"

@@ -1,7 +1,7 @@
 /* Rigid objects in the residual and the tangent of a model. */
 #include <math.h>
 #include <string.h>
-#include "solver/fe/box_tree.h"
+#include "solver/base/box_tree.h"
 #include "solver/fe/model_internal.h"
 #include "solver/fe/obstacle_internal.h"
 #include "solver/base/vec3.h"

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "solver/base/box_tree.h"
 #include "solver/base/vec3.h"
 #include "solver/rigid/surface_internal.h"
 
@@ -18,7 +19,7 @@ void surface_release(struct surface *surface) {
   free(surface->normal);
   free(surface->pseudo);
   free(surface->bend);
-  free(surface->node);
+  box_tree_destroy(surface->tree);
   free(surface->flat);
   *surface = (struct surface){0};
 }

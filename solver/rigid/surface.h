@@ -26,7 +26,7 @@
 #include "solver/rigid/stl.h"
 
 struct surface_flat;
-struct surface_node;
+struct box_tree;
 
 struct surface {
   int vertex_count, triangle_count;
@@ -40,9 +40,8 @@ struct surface {
   double *bend;           /* 9 each: of the edge curves, m; edge e is
                              (1 - s) a + s b - s (1 - s) bend */
   double low[3], high[3]; /* box of the patches, m */
-  int node_count;
-  struct surface_node *node;
-  struct surface_flat *flat; /* the triangles in the order of the leaves */
+  struct box_tree *tree;  /* over the patches */
+  struct surface_flat *flat; /* the triangles in the order of the tree */
 };
 
 /* A surface in metres from triangles in units of `unit` metres. crease: least angle between

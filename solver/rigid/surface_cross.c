@@ -1,6 +1,7 @@
 /* Edges of a surface that pass through its triangles. */
 #include <math.h>
 
+#include "solver/base/box_tree.h"
 #include "solver/base/vec3.h"
 #include "solver/rigid/surface_internal.h"
 
@@ -32,16 +33,16 @@ static bool passes(const struct surface *surface, const double a[3], const doubl
 }
 
 /* Whether a segment from `a` by `way` meets a box. */
-static bool meets(const struct surface_node *node, const double a[3], const double way[3]) {
+static bool meets(const struct box *box, const double a[3], const double way[3]) {
   double enter = 0, leave = 1;
   for (int i = 0; i < 3; i++) {
     if (way[i] == 0) {
-      if (a[i] < node->low[i] || a[i] > node->high[i]) {
+      if (a[i] < box->low[i] || a[i] > box->high[i]) {
         return false;
       }
       continue;
     }
-    double s = (node->low[i] - a[i]) / way[i], t = (node->high[i] - a[i]) / way[i];
+    double s = (box->low[i] - a[i]) / way[i], t = (box->high[i] - a[i]) / way[i];
     enter = fmax(enter, fmin(s, t));
     leave = fmin(leave, fmax(s, t));
   }
@@ -58,19 +59,21 @@ static bool has_vertex(const struct surface *surface, int t, int vertex) {
 static int find_passed(const struct surface *surface, int v, int w, long *budget) {
   const double *a = surface->x + 3 * v, *b = surface->x + 3 * w;
   double way[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-  int stack[SURFACE_STACK], waiting = 0;
+  const struct box_branch *all = box_tree_branches(surface->tree);
+  int stack[BOX_TREE_DEPTH], waiting = 0;
   stack[waiting++] = 0;
   while (waiting > 0 && --*budget >= 0) {
-    const struct surface_node *node = &surface->node[stack[--waiting]];
-    if (!meets(node, a, way)) {
+    const struct box_branch *branch = &all[stack[--waiting]];
+    if (!meets(&branch->box, a, way)) {
       continue;
     }
-    if (node->count == 0) {
-      stack[waiting++] = node->first;
-      stack[waiting++] = node->first + 1;
+    if (branch->child > 0) {
+      stack[waiting++] = branch->child;
+      stack[waiting++] = branch->child + 1;
+      continue;
     }
-    for (int n = 0; n < node->count; n++) {
-      int t = surface->flat[node->first + n].triangle;
+    for (int n = 0; n < branch->count; n++) {
+      int t = surface->flat[branch->first + n].triangle;
       if (!has_vertex(surface, t, v) && !has_vertex(surface, t, w) && passes(surface, a, b, t)) {
         return t;
       }

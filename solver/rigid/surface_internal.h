@@ -54,14 +54,6 @@ void patch_normal(const struct patch *patch, double v, double w, double normal[3
 
 /* ---- tree (surface_tree.c) -------------------------------------------------------------- */
 
-enum { SURFACE_LEAF = 4, SURFACE_STACK = 64 };
-
-struct surface_node {
-  double low[3], high[3];
-  int first; /* of a leaf: in `flat`; otherwise the first of its two nodes, which are neighbours */
-  int count; /* triangles of a leaf; 0: not a leaf */
-};
-
 /* A triangle of a leaf, with what its distance needs, side by side in memory. */
 struct surface_flat {
   double x[3], a[3], b[3]; /* a corner, and the edges from it to the next and the last, m */
@@ -73,16 +65,5 @@ struct surface_flat {
 
 /* Builds the tree over the patches. STATUS_NO_MEMORY. */
 enum status surface_plant(struct surface *surface);
-
-/* Square of the distance of a point from a node's box, m2. */
-static inline double surface_node_distance(const struct surface_node *node, const double x[3]) {
-  double square = 0;
-  for (int i = 0; i < 3; i++) {
-    double below = node->low[i] - x[i], above = x[i] - node->high[i];
-    double off = below > above ? below : above;
-    square += off > 0 ? off * off : 0;
-  }
-  return square;
-}
 
 #endif

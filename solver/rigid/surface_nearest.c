@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "solver/base/box_tree.h"
 #include "solver/base/vec3.h"
 #include "solver/rigid/surface_internal.h"
 
@@ -199,30 +200,31 @@ static void try_patch(const struct surface *surface, const struct surface_flat *
 static bool find_foot(const struct surface *surface, const double x[3], double limit,
                       struct foot *best) {
   struct {
-    int node;
+    const struct box_branch *branch;
     double square;
-  } stack[SURFACE_STACK];
+  } stack[BOX_TREE_DEPTH];
+  const struct box_branch *all = box_tree_branches(surface->tree);
   int waiting = 0;
   *best = (struct foot){.square = limit, .triangle = -1};
-  stack[waiting].node = 0;
-  stack[waiting++].square = surface_node_distance(&surface->node[0], x);
+  stack[waiting].branch = all;
+  stack[waiting++].square = box_distance_square(&all->box, x);
   while (waiting > 0) {
     waiting--;
+    const struct box_branch *branch = stack[waiting].branch;
     if (stack[waiting].square > best->square) {
       continue;
     }
-    const struct surface_node *node = &surface->node[stack[waiting].node];
-    for (int n = 0; n < node->count; n++) {
-      try_patch(surface, &surface->flat[node->first + n], x, best);
-    }
-    if (node->count == 0) {
-      double a = surface_node_distance(&surface->node[node->first], x);
-      double b = surface_node_distance(&surface->node[node->first + 1], x);
-      int near = a <= b ? node->first : node->first + 1;
-      stack[waiting].node = near == node->first ? near + 1 : node->first;
+    if (branch->child > 0) {
+      const struct box_branch *near = &all[branch->child], *far = near + 1;
+      double a = box_distance_square(&near->box, x), b = box_distance_square(&far->box, x);
+      stack[waiting].branch = a <= b ? far : near;
       stack[waiting++].square = fmax(a, b);
-      stack[waiting].node = near;
+      stack[waiting].branch = a <= b ? near : far;
       stack[waiting++].square = fmin(a, b);
+      continue;
+    }
+    for (int n = 0; n < branch->count; n++) {
+      try_patch(surface, &surface->flat[branch->first + n], x, best);
     }
   }
   return best->triangle >= 0;
@@ -383,7 +385,7 @@ bool surface_nearest(const struct surface *surface, const double x[3], double re
   struct foot foot;
   struct patch patch;
   double out[3], point[3], off[3];
-  double from_box = surface_node_distance(&surface->node[0], x);
+  double from_box = box_distance_square(&box_tree_branches(surface->tree)->box, x);
   /* Outside of the box the body is not nearer; within it the sign is not known yet. */
   if (from_box > 0 && !(reach >= 0 && from_box <= reach * reach)) {
     return false;

@@ -197,6 +197,17 @@ job() {
 END
 }
 
+# light_study NAME SIZE: a document of many members that take some milliseconds each.
+light_study() {
+  jq -nc --arg name "$1" --argjson size "$2" '{ kind: "study", $name, sampling: "sobol", $size, seed: 7,
+    base: { kind: "hlpv", end: "1 s", sample_rate: "5 Hz", initial: { mode: "free" },
+      model: { mass: "60 g", gamma: "5.577 N/psi",
+        modes: { free: { stiffness: "2000 N/m", damping: "15 N s/m", alpha: "-9 1/s", beta: "9 1/s" } } },
+      input: { hold: [["0 s", "3 psi"]] } },
+    parameters: [ { pointer: "/model/mass", name: "mass", from: "50 g", to: "70 g" },
+      { pointer: "/model/modes/free/damping", from: "10 N s/m", to: "20 N s/m" } ] }'
+}
+
 # solver BODY: writes a stand-in for pneulab-solve that runs BODY (with $out, $events, $job set and
 # the functions progress and result at hand) and prints its path.
 solver() {

@@ -5,17 +5,6 @@
 limit=2048
 grep -aqE '__(asan|tsan)_init' "$BIN/pneulab-solve" && limit=0
 
-# study: 300 members; every tenth diverges, since its time is over.
-study() {
-  jq -nc '{ kind: "study", name: "three hundred", sampling: "sobol", size: 300, seed: 7,
-    base: { kind: "hlpv", end: "1 s", sample_rate: "5 Hz", initial: { mode: "free" },
-      model: { mass: "60 g", gamma: "5.577 N/psi",
-        modes: { free: { stiffness: "2000 N/m", damping: "15 N s/m", alpha: "-9 1/s", beta: "9 1/s" } } },
-      input: { hold: [["0 s", "3 psi"]] } },
-    parameters: [ { pointer: "/model/mass", name: "mass", from: "50 g", to: "70 g" },
-      { pointer: "/model/modes/free/damping", from: "10 N s/m", to: "20 N s/m" } ] }'
-}
-
 # A stand-in that takes a moment, so that there is something to kill, and fails where the mass is
 # large.
 solver '[[ $(< "$job") =~ \"mass\":\ \"([0-9]+)([0-9.]*) ]]
@@ -27,7 +16,8 @@ printf "{\"status\":\"%s\",\"reason\":\"%s\",\"message\":\"%s\",\"metrics\":%s,\
 [ "$status" = succeeded ] || exit 3' > /dev/null
 
 start_daemon --solver "$WORK/solver" --memory-limit "$limit" --workers 2
-id=$(submit "$(study)")
+# Every tenth member diverges.
+id=$(submit "$(light_study "three hundred" 300)")
 for round in 1 2 3 4; do
   for _ in $(seq 400); do
     done=$(sql "select count(*) from job where study_id = $id and finished_ms is not null")

@@ -20,6 +20,9 @@ function watchLayout() {
   }).observe({ type: 'layout-shift', buffered: true });
 }
 
+// On a machine without a graphics card Chromium draws WebGL by software, and says what that costs.
+export const BY_SOFTWARE = /GPU stall due to ReadPixels/;
+
 export class Browser {
   constructor(program, check) {
     this.program = program;
@@ -153,6 +156,23 @@ class Visit {
   async shot(name, fullPage = true) {
     if (process.env.PAGES_SHOTS) {
       await this.page.screenshot({ path: join(process.env.PAGES_SHOTS, `${name}.png`), fullPage });
+    }
+  }
+}
+
+// Pages (names and paths) on a desk and a phone, light and dark: they fit, keep still, are accessible.
+export async function visitSizes(open, pages) {
+  for (const [width, height, scheme] of [[1280, 900, 'light'], [390, 844, 'dark']]) {
+    for (const [name, path] of Object.entries(pages)) {
+      const what = `${name}-${width}-${scheme}`;
+      const visit = await open(path, { width, height, scheme });
+      await visit.page.waitForLoadState('networkidle');
+      await visit.fits(`${what} fits`);
+      await visit.still(`${what} is still`);
+      await visit.accessible(`${what} is accessible`);
+      await visit.quiet(`${what} complains about nothing`, BY_SOFTWARE);
+      await visit.shot(what);
+      await visit.close();
     }
   }
 }

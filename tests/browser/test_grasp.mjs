@@ -1,9 +1,7 @@
 // The page of a grasp: the moving view of fingers and object, what can be read without scripts, the
 // comparison of grasps.
+import { BY_SOFTWARE, visitSizes } from './browser.mjs';
 import { lab } from './driver.mjs';
-
-// On a machine without a graphics card Chromium draws WebGL by software, and says what that costs.
-const BY_SOFTWARE = /GPU stall due to ReadPixels/;
 
 // A short finger that presses on a bar, which is drawn from under it.
 function grasp(name, friction) {
@@ -130,23 +128,6 @@ async function testExample({ open, check }) {
   await visit.close();
 }
 
-async function testSizes({ open }) {
-  const pages = { grasp: '/jobs/1', compared: '/compare?jobs=1,2' };
-  for (const [width, height, scheme] of [[1280, 900, 'light'], [390, 844, 'dark']]) {
-    for (const [name, path] of Object.entries(pages)) {
-      const what = `${name}-${width}-${scheme}`;
-      const visit = await open(path, { width, height, scheme });
-      await visit.page.waitForLoadState('networkidle');
-      await visit.fits(`${what} fits`);
-      await visit.still(`${what} is still`);
-      await visit.accessible(`${what} is accessible`);
-      await visit.quiet(`${what} complains about nothing`, BY_SOFTWARE);
-      await visit.shot(what);
-      await visit.close();
-    }
-  }
-}
-
 await lab(async (tools) => {
   const { daemon, check } = tools;
   for (const [name, friction] of [['a rough bar', 0.9], ['a smooth bar', 0.4]]) {
@@ -158,5 +139,5 @@ await lab(async (tools) => {
   await testCompare(tools);
   await testCompareReading(tools);
   await testExample(tools);
-  await testSizes(tools);
+  await visitSizes(tools.open, { grasp: '/jobs/1', compared: '/compare?jobs=1,2' });
 }, { options: ['--workers', '1'] });

@@ -1,9 +1,7 @@
 // The pages of jobs, with scripts: list, comparison, editor, a job that runs and one that ended.
+import { BY_SOFTWARE, visitSizes } from './browser.mjs';
 import { finger } from './daemon.mjs';
 import { lab } from './driver.mjs';
-
-// On a machine without a graphics card Chromium draws WebGL by software, and says what that costs.
-const BY_SOFTWARE = /GPU stall due to ReadPixels/;
 
 const TRICK = '<img src=x onerror=alert(1)> & more';
 
@@ -195,24 +193,6 @@ async function testStudy({ open, check, daemon }) {
   await visit.close();
 }
 
-// Desk and phone, light and dark.
-async function testSizes({ open }) {
-  const pages = { list: '/', job: '/jobs/1', failed: '/jobs/3', compare: '/compare?jobs=1,2', submit: '/submit?from=1' };
-  for (const [width, height, scheme] of [[1280, 900, 'light'], [390, 844, 'dark']]) {
-    for (const [name, path] of Object.entries(pages)) {
-      const what = `${name}-${width}-${scheme}`;
-      const visit = await open(path, { width, height, scheme });
-      await visit.page.waitForLoadState('networkidle');
-      await visit.fits(`${what} fits`);
-      await visit.still(`${what} is still`);
-      await visit.accessible(`${what} is accessible`);
-      await visit.quiet(`${what} complains about nothing`, BY_SOFTWARE);
-      await visit.shot(what);
-      await visit.close();
-    }
-  }
-}
-
 await lab(async (tools) => {
   const { daemon } = tools;
   await daemon.submit(finger());
@@ -225,5 +205,5 @@ await lab(async (tools) => {
   await testRunning(tools);
   await testReading(tools);
   await testStudy(tools);
-  await testSizes(tools);
+  await visitSizes(tools.open, { list: '/', job: '/jobs/1', failed: '/jobs/3', compare: '/compare?jobs=1,2', submit: '/submit?from=1' });
 }, { options: ['--workers', '1'] });

@@ -6,17 +6,6 @@
 
 # ---- the same numbers ------------------------------------------------------------------------
 
-# light: 40 members of some milliseconds.
-light() {
-  jq -nc '{ kind: "study", name: "light", sampling: "sobol", size: 40, seed: 7,
-    base: { kind: "hlpv", end: "1 s", sample_rate: "5 Hz", initial: { mode: "free" },
-      model: { mass: "60 g", gamma: "5.577 N/psi",
-        modes: { free: { stiffness: "2000 N/m", damping: "15 N s/m", alpha: "-9 1/s", beta: "9 1/s" } } },
-      input: { hold: [["0 s", "3 psi"]] } },
-    parameters: [ { pointer: "/model/mass", name: "mass", from: "50 g", to: "70 g" },
-      { pointer: "/model/modes/free/damping", from: "10 N s/m", to: "20 N s/m" } ] }'
-}
-
 # bodies: four small ones.
 bodies() {
   jq -nc '{ kind: "study", name: "bodies",
@@ -45,7 +34,7 @@ numbers() {
 }
 
 start_daemon --memory-limit "$limit" --workers 2 --solver "$BIN/pneulab-solve"
-first=$(submit "$(light)") second=$(submit "$(bodies)")
+first=$(submit "$(light_study light 40)") second=$(submit "$(bodies)")
 check "light ones, here" succeeded "$(wait_state "$first" 'succeeded|failed|timed_out' 300)"
 check "bodies, here" succeeded "$(wait_state "$second" 'succeeded|failed|timed_out' 300)"
 numbers > "$WORK/here"
@@ -55,7 +44,7 @@ DATA=$WORK/shared
 start_on_cluster --solver "$BIN/pneulab-solve"
 fetch GET /readyz
 check "the daemon with a cluster is ready" 200 "$CODE"
-first=$(submit "$(light)") second=$(submit "$(bodies)")
+first=$(submit "$(light_study light 40)") second=$(submit "$(bodies)")
 check "light ones, there" succeeded "$(wait_state "$first" 'succeeded|failed|timed_out' 300)"
 check "bodies, there" succeeded "$(wait_state "$second" 'succeeded|failed|timed_out' 300)"
 numbers > "$WORK/there"

@@ -3,7 +3,7 @@
 #include <check.h>
 #include <math.h>
 #include <stdlib.h>
-#include "solver/fe/box_tree.h"
+#include "solver/base/box_tree.h"
 #include "solver/base/vec3.h"
 
 static void node_position(const struct mesh *mesh, const double *u, int node, double x[3]) {

@@ -2,7 +2,7 @@
 #include <check.h>
 #include <math.h>
 #include <stdlib.h>
-#include "solver/fe/box_tree.h"
+#include "solver/base/box_tree.h"
 #include "solver/verify/body.h"
 #include "tests/unit/suite.h"
 

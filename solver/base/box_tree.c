@@ -1,21 +1,12 @@
-#include "solver/fe/box_tree.h"
+#include "solver/base/box_tree.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-enum { LEAF_SIZE = 4, DEPTH_MAX = 64 };
-
-/* A node holds the boxes order[first] .. order[first + count - 1]; a leaf has child 0, any other
- * node its children at child and child + 1. */
-struct branch {
-  struct box box;
-  int first, count, child;
-};
-
 struct box_tree {
   struct box *box;
   int *order;
-  struct branch *branch;
+  struct box_branch *branch;
   int branch_count;
 };
 
@@ -53,10 +44,14 @@ static double centre(const struct box *box, int axis) {
 }
 
 /* Partly sorts the boxes of a branch by their centres, so that the one of rank `middle` stands
- * in its place (Hoare's selection). Ties keep no order, but always the same one. */
+ * in its place (Hoare's selection; the middle one of three is the pivot, and equal ones are
+ * exchanged, so that many of them do no harm). Ties keep no order, but always the same one. */
 static void select_median(struct box_tree *t, int first, int last, int middle, int axis) {
   while (first < last) {
-    double pivot = centre(&t->box[t->order[(first + last) / 2]], axis);
+    double a = centre(&t->box[t->order[first]], axis),
+           b = centre(&t->box[t->order[(first + last) / 2]], axis),
+           c = centre(&t->box[t->order[last]], axis);
+    double pivot = fmax(fmin(a, b), fmin(fmax(a, b), c));
     int low = first, high = last;
     while (low <= high) {
       while (centre(&t->box[t->order[low]], axis) < pivot) {
@@ -82,7 +77,7 @@ static void select_median(struct box_tree *t, int first, int last, int middle, i
 }
 
 static void fill_branch(struct box_tree *t, int index) {
-  struct branch *b = &t->branch[index];
+  struct box_branch *b = &t->branch[index];
   struct box centres = box_empty();
   b->box = box_empty();
   for (int i = b->first; i < b->first + b->count; i++) {
@@ -92,7 +87,7 @@ static void fill_branch(struct box_tree *t, int index) {
     box_include(&b->box, box->high);
     box_include(&centres, middle);
   }
-  if (b->count <= LEAF_SIZE) {
+  if (b->count <= BOX_TREE_LEAF) {
     return;
   }
   int axis = 0;
@@ -105,8 +100,8 @@ static void fill_branch(struct box_tree *t, int index) {
   select_median(t, b->first, b->first + b->count - 1, b->first + half, axis);
   b->child = t->branch_count;
   t->branch_count += 2;
-  t->branch[b->child] = (struct branch){.first = b->first, .count = half};
-  t->branch[b->child + 1] = (struct branch){.first = b->first + half, .count = b->count - half};
+  t->branch[b->child] = (struct box_branch){.first = b->first, .count = half};
+  t->branch[b->child + 1] = (struct box_branch){.first = b->first + half, .count = b->count - half};
 }
 
 struct box_tree *box_tree_create(const struct box *boxes, int count) {
@@ -143,15 +138,23 @@ void box_tree_destroy(struct box_tree *t) {
   free(t);
 }
 
+const struct box_branch *box_tree_branches(const struct box_tree *t) {
+  return t->branch;
+}
+
+const int *box_tree_order(const struct box_tree *t) {
+  return t->order;
+}
+
 static int ascending(const void *a, const void *b) {
   int x = *(const int *)a, y = *(const int *)b;
   return (x > y) - (x < y);
 }
 
 int box_tree_find(const struct box_tree *t, const struct box *box, int *found, int capacity) {
-  int waiting[DEPTH_MAX] = {0}, top = 1, count = 0;
+  int waiting[BOX_TREE_DEPTH] = {0}, top = 1, count = 0;
   while (top > 0) {
-    const struct branch *b = &t->branch[waiting[--top]];
+    const struct box_branch *b = &t->branch[waiting[--top]];
     if (!box_overlaps(&b->box, box)) {
       continue;
     }
