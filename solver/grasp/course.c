@@ -141,8 +141,13 @@ static double way_of(const struct finger *f) {
   return sqrt(sum / mesh->node_count);
 }
 
-/* Whether a state that was reached by a leap is that of a body that has jumped. */
+/* Whether the state that was tried is that of a body that has jumped, as Newton's method may do
+ * without a word: in a leap, and in the pull, where a body that goes with the object moves about as
+ * far as it. */
 static bool has_jumped(const struct course *c, double target) {
+  if (!c->leaps && c->stage.kind != STAGE_PULL) {
+    return false;
+  }
   double usual = fmax(c->pace, c->f->grasp.longest_step / c->stage.full);
   return way_of(c->f) > jump_factor * usual * (target - c->along);
 }
@@ -159,7 +164,7 @@ static enum status rest_at(struct course *c, double target, int *iterations) {
   if (status == STATUS_OK && f->solve.solver->negative_pivots > 0) {
     status = STATUS_UNSTABLE_PATH;
   }
-  if (status == STATUS_OK && c->leaps && has_jumped(c, target)) {
+  if (status == STATUS_OK && has_jumped(c, target)) {
     status = STATUS_UNSTABLE_PATH;
   }
   if (f->solve.solver->verbose) {
