@@ -8,11 +8,14 @@
 enum {
   STALL_ITERATIONS = 5, /* give up after so many without a smaller correction */
   BACKTRACKS = 5,
+  LINE_SEARCHES = 3,
   CHORD_STEPS = 12
 };
 
 /* Steps of which less than this part can be taken are cut short by far. */
 static const double rough_share = 0.25;
+/* A step overshoots when so much of the force along it comes back; least part to go on with. */
+static const double overshot = 0.5, least_share = 0.1;
 /* Part of the unbalanced forces that a rough polishing may leave. */
 static const double rough_force = 0.1;
 
@@ -172,6 +175,9 @@ static enum status take_step(struct equilibrium *s, struct fe_load *load, double
     if (status == STATUS_OK) {
       return STATUS_OK;
     }
+    if (s->verbose) {
+      fprintf(stderr, "    part %.2f of a step: %s\n", *share, status_word(status));
+    }
     *share *= 0.4;
     take_back(s, state);
     *load_parameter(s, load) = start;
@@ -216,6 +222,33 @@ bool equilibrium_polish(struct equilibrium *s, struct fe_load *load, struct fe_s
   return false;
 }
 
+/* take_step, and with rigid objects less of the step where it overshoots: where the forces along it
+ * that it was to remove come back with the other sign. Points that touch and leave in turn, or
+ * stick and slip, would make Newton's method go to and fro for ever; with the multipliers held
+ * there is a potential, which the tangent's steps descend. */
+static enum status take_measured_step(struct equilibrium *s, struct fe_load *load, double change,
+                                      struct fe_state *state, double most, double *share) {
+  struct fe_model *m = s->model;
+  double before = dot(s, m->residual, s->step), start = *load_parameter(s, load);
+  bool watched = s->settling && !s->guest && !s->control.active && before > 0 &&
+                 most > s->options.step_tolerance;
+  enum status status = take_step(s, load, change, state, most, share);
+  for (int k = 0; k < LINE_SEARCHES && status == STATUS_OK && watched; k++) {
+    double after = dot(s, m->residual, s->step);
+    if (after > -overshot * before) {
+      break;
+    }
+    take_back(s, state);
+    *load_parameter(s, load) = start;
+    status = model_evaluate(m, state, load, false);
+    *share *= fmax(least_share, before / (before - after));
+    if (status == STATUS_OK) {
+      status = take_step(s, load, change, state, most, share);
+    }
+  }
+  return status;
+}
+
 /* Takes s->step, of rms `size`, and the change of the load parameter, no further than the longest
  * step, and polishes what a whole step reached. *converged tells whether that is the equilibrium.
  */
@@ -223,7 +256,7 @@ static enum status step_and_polish(struct equilibrium *s, struct fe_load *load, 
                                    struct fe_state *state, double size, bool *converged) {
   double most = reach_of(s, s->step);
   double share = most > s->options.longest_step ? s->options.longest_step / most : 1;
-  enum status status = take_step(s, load, change, state, most, &share);
+  enum status status = take_measured_step(s, load, change, state, most, &share);
   if (s->verbose) {
     struct contact_summary c = contact_summarise(&s->model->contact);
     fprintf(stderr, "    step %.2e share %.2f negative %d active %d gap %.3e load %.6g\n", size,
