@@ -8,6 +8,7 @@
 #include "server/http/job_view.h"
 #include "server/http/page.h"
 #include "server/http/page_text.h"
+#include "server/http/study_table.h"
 #include "server/study/tables.h"
 
 enum { PAGE_ROWS = 100, METRICS_SHOWN = 12, ADDRESS = 600 };
@@ -241,6 +242,71 @@ static void plots_write(struct html *html, const struct study_page *page) {
   html_close(html);
 }
 
+static void failure_write(struct html *html, const json_t *failure) {
+  char word[PAGE_TEXT], href[PAGE_TEXT], text[32];
+  const char *reason = json_string_value(json_object_get(failure, "reason_code"));
+  const char *advice = page_advice(reason);
+  size_t index;
+  json_t *job;
+  page_word(reason[0] ? reason : "failed", word);
+  html_open(html, "tr", "data-reason", reason, NULL);
+  html_leaf(html, "th", word, "scope", "row", NULL);
+  html_open(html, "td", "class", "number", NULL);
+  html_format(html, "%lld", (long long)json_integer_value(json_object_get(failure, "count")));
+  html_close(html);
+  html_open(html, "td", NULL);
+  json_array_foreach(json_object_get(failure, "jobs"), index, job) {
+    snprintf(text, sizeof text, "%lld", (long long)json_integer_value(job));
+    snprintf(href, sizeof href, "/jobs/%s", text);
+    html_text(html, index > 0 ? ", " : "");
+    html_leaf(html, "a", text, "href", href, NULL);
+  }
+  html_close(html);
+  html_leaf(html, "td", advice ? advice : "", "class", "wide", NULL);
+  html_close(html);
+  html_text(html, "\n");
+}
+
+static void failures_write(struct html *html, const struct study_page *page) {
+  json_t *failures = study_failures(page->table), *failure;
+  size_t index;
+  if (json_array_size(failures) > 0) {
+    html_open(html, "section", "class", "card", "aria-labelledby", "reasons-title", NULL);
+    html_leaf(html, "h2", "Failures by reason", "id", "reasons-title", NULL);
+    html_open(html, "table", "id", "reasons", NULL);
+    html_open(html, "tbody", NULL);
+    json_array_foreach(failures, index, failure) {
+      failure_write(html, failure);
+    }
+    html_close(html);
+    html_close(html);
+    html_close(html);
+  }
+  json_decref(failures);
+}
+
+static void files_write(struct html *html, const struct study_page *page) {
+  static const struct {
+    const char *name, *of, *part;
+  } files[] = {{"All designs (CSV)", "studies", "export.csv"},
+               {"For Optuna (CSV)", "studies", "export.csv?format=optuna"},
+               {"All designs (JSON)", "studies", "designs?format=columns"},
+               {"Document (JSON)", "jobs", "document"}};
+  char href[PAGE_TEXT];
+  html_open(html, "section", "class", "card", "aria-labelledby", "reading-files", NULL);
+  html_leaf(html, "h2", "Files", "id", "reading-files", NULL);
+  html_open(html, "ul", "class", "plain", NULL);
+  for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+    html_open(html, "li", NULL);
+    snprintf(href, sizeof href, "/api/v1/%s/%lld/%s", files[i].of, (long long)page->table->study_id,
+             files[i].part);
+    html_leaf(html, "a", files[i].name, "href", href, NULL);
+    html_close(html);
+  }
+  html_close(html);
+  html_close(html);
+}
+
 static void reading_write(struct html *html, void *context) {
   const struct study_page *page = context;
   html_open(html, "div", "class", "bar", NULL);
@@ -251,8 +317,10 @@ static void reading_write(struct html *html, void *context) {
               page->table->wanted);
   html_close(html);
   html_close(html);
+  failures_write(html, page);
   plots_write(html, page);
   table_write(html, page);
+  files_write(html, page);
 }
 
 /* ---- the page ---------------------------------------------------------------------------- */

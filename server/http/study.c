@@ -5,6 +5,7 @@
 #include "server/http/cache.h"
 #include "server/http/handlers.h"
 #include "server/http/job_view.h"
+#include "server/http/study_table.h"
 #include "server/http/submission.h"
 #include "server/study/conductor.h"
 #include "server/study/designs.h"
@@ -46,8 +47,7 @@ static json_t *reason_entry(json_t *list, const char *reason) {
   return json_array_get(list, json_array_size(list) - 1);
 }
 
-/* Members that have ended without success, by their reason, with a few of each. */
-static json_t *failures_view(const struct study_table *table) {
+json_t *study_failures(const struct study_table *table) {
   json_t *list = json_array();
   for (size_t i = 0; i < table->members; i++) {
     enum job_state state = (enum job_state)table->state[i];
@@ -99,7 +99,7 @@ static json_t *study_view(const struct service *service, const struct study_tabl
       "progress", json_object_get(job, "progress"), "progress_detail",
       json_object_get(job, "progress_detail"), "sampling", table->sampling, "extendable",
       can_extend(table->sampling), "members", (json_int_t)table->wanted, "stored",
-      (json_int_t)table->members, "counts", counts_view(table), "failures", failures_view(table),
+      (json_int_t)table->members, "counts", counts_view(table), "failures", study_failures(table),
       "parameters", columns_view(table->parameter, table->parameters, "parameter"), "metrics",
       columns_view(table->metric, table->metrics, "metric"), "view",
       json_sprintf("study_%lld", (long long)table->study_id), "links", links_view(table->study_id));

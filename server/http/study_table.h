@@ -25,4 +25,8 @@ enum status study_document_read(const struct request *request, int64_t study_id,
 enum status study_fixed_read(const struct request *request, const struct study_table *table,
                              double at[SURROGATE_PARAMETERS_MAX], struct error *error);
 
+/* Members that have ended without success, by their reason, with a few of each: a new list of
+ * {"reason_code", "count", "jobs"}. */
+json_t *study_failures(const struct study_table *table);
+
 #endif

@@ -90,6 +90,9 @@ masses() { # of the rows of the page, in their order
 fetch GET "/studies/$id?sort=-/model/mass&page=1"
 check "the heaviest first" "200 text/html 70,70,60,60,50,50" \
   "$CODE $(header Content-Type | cut -d';' -f1) $(masses)"
+check "failures by reason, with their jobs" 3 \
+  "$(grep 'data-reason="diverged"' <<< "$BODY" | grep -o 'href="/jobs/[0-9]*"' | wc -l)"
+check "and the table for Optuna" 1 "$(grep -c "href=\"/api/v1/studies/$id/export.csv?format=optuna\"" <<< "$BODY")"
 fetch GET "/studies/$id?sort=-/model/mass&page=1" -H "If-None-Match: $(header ETag)"
 check "a page that is known is not sent again" "304 0" "$CODE ${#BODY}"
 fetch GET "/studies/$id?page=0"
