@@ -9,6 +9,8 @@
 /* Pivots of the six by six system below this part of the largest one belong to motions that nothing
  * resists: they are left out if nothing drives them either, to this part of the forces. */
 static const double idle_pivot = 1e-10, idle_force = 1e-5;
+/* Stiffnesses of the object below this part of the largest one are taken for none. */
+static const double idle_stiffness = 1e-6;
 
 void free_object_centroid(const struct free_object *o, double centroid[3]) {
   rigid_pose_outward(&o->model->obstacle[o->index]->pose, o->centroid, centroid);
@@ -28,6 +30,25 @@ static void shift_moment(const double arm[3], double column[6]) {
   }
 }
 
+/* Leaves of force and moment what can move the object. */
+static void project(const struct free_object *o, double v[6]) {
+  if (o->guided) {
+    double along = vec3_dot(o->axis, v);
+    for (int i = 0; i < 3; i++) {
+      v[i] = along * o->axis[i];
+      v[3 + i] = 0;
+    }
+  }
+  for (int i = 1; o->half && i < 6; i += 2) {
+    v[i] = 0;
+  }
+}
+
+void free_object_guide(struct free_object *o, const double axis[3]) {
+  o->guided = true;
+  memcpy(o->axis, axis, sizeof o->axis);
+}
+
 void free_object_resultant(const struct free_object *o, double resultant[6]) {
   struct obstacle_state s = model_obstacle_state(o->model, o->index);
   double arm[3];
@@ -36,8 +57,10 @@ void free_object_resultant(const struct free_object *o, double resultant[6]) {
   memcpy(resultant + 3, s.moment, sizeof s.moment);
   shift_moment(arm, resultant);
   for (int i = 0; i < 3; i++) {
-    resultant[i] += o->mass * o->gravity[i];
+    resultant[i] += o->mass * o->gravity[i] + o->applied[i];
+    resultant[3 + i] += o->applied[3 + i];
   }
+  project(o, resultant);
 }
 
 /* g: what inertia wants less what the forces give. */
@@ -168,10 +191,42 @@ static bool solve6(double a[6][7], double idle, double x[6]) {
   return free_of_force;
 }
 
+/* Stiffness of a guided object along its axis, N/m. */
+static double guided_stiffness(const struct free_object *o) {
+  double sum = 0;
+  for (int i = 0; i < 9; i++) {
+    sum += o->axis[i / 3] * o->tangent[6 * (i / 3) + i % 3] * o->axis[i % 3];
+  }
+  return sum;
+}
+
+/* As `correct`, of a guided object: one equation. */
+static double correct_guided(struct free_object *o, double *step) {
+  int count = o->model->dof_count;
+  double residual[6], stiffness = guided_stiffness(o);
+  residual_of(o, residual);
+  double force = vec3_dot(o->axis, residual);
+  double idle = idle_force * (o->mass * vec3_norm(o->gravity) + fabs(force));
+  for (int i = 0; i < 3; i++) {
+    const double *row = o->coupling.by_u + (size_t)i * (size_t)count;
+    force += o->axis[i] * cblas_ddot(count, row, 1, step, 1);
+  }
+  bool good = stiffness != 0 || fabs(force) <= idle;
+  double way = good && stiffness != 0 ? force / stiffness : 0;
+  for (int j = 0; j < 6; j++) {
+    o->correction[j] = j < 3 ? way * o->axis[j] : 0;
+    cblas_daxpy(count, -o->correction[j], o->response + (size_t)j * (size_t)count, 1, step, 1);
+  }
+  return good ? fabs(way) : INFINITY;
+}
+
 /* From K^-1 r of the body alone to that of body and object. Turns and moments are scaled by the
  * object's size. */
 static double correct(void *context, double *step) {
   struct free_object *o = context;
+  if (o->guided) {
+    return correct_guided(o, step);
+  }
   int count = o->model->dof_count;
   double residual[6], a[6][7], x[6], scale = 1 / o->size;
   residual_of(o, residual);
@@ -225,8 +280,45 @@ static void restore(void *context) {
   model_place_obstacle(o->model, o->index, &o->kept);
 }
 
+/* Symmetric elimination, the largest pivot first; of half an object only what stays in the plane.
+ */
+bool free_object_stable(const struct free_object *o) {
+  if (o->guided) {
+    return guided_stiffness(o) >= 0;
+  }
+  double a[6][6], largest = 0;
+  bool left[6];
+  for (int i = 0; i < 36; i++) {
+    double scale = (i / 6 < 3 ? 1 : 1 / o->size) * (i % 6 < 3 ? 1 : 1 / o->size);
+    a[i / 6][i % 6] = 0.5 * scale * (o->tangent[i] + o->tangent[6 * (i % 6) + i / 6]);
+  }
+  for (int i = 0; i < 6; i++) {
+    left[i] = !o->half || i % 2 == 0;
+    largest = left[i] ? fmax(largest, fabs(a[i][i])) : largest;
+  }
+  for (int n = 0; n < 6; n++) {
+    int k = -1;
+    for (int i = 0; i < 6; i++) {
+      k = left[i] && (k < 0 || fabs(a[i][i]) > fabs(a[k][k])) ? i : k;
+    }
+    if (k < 0 || fabs(a[k][k]) <= idle_stiffness * largest) {
+      return true;
+    }
+    if (a[k][k] < 0) {
+      return false;
+    }
+    left[k] = false;
+    for (int i = 0; i < 36; i++) {
+      bool inside = left[i / 6] && left[i % 6];
+      a[i / 6][i % 6] -= inside ? a[i / 6][k] * a[k][i % 6] / a[k][k] : 0;
+    }
+  }
+  return true;
+}
+
 void free_object_begin(struct free_object *o) {
   o->start = o->model->obstacle[o->index]->pose;
+  memcpy(o->applied_before, o->applied, sizeof o->applied);
 }
 
 void free_object_return(struct free_object *o) {
@@ -234,11 +326,16 @@ void free_object_return(struct free_object *o) {
 }
 
 double free_object_weight_work(const struct free_object *o) {
-  double from[3], to[3], work = 0;
+  const struct rigid_pose *pose = &o->model->obstacle[o->index]->pose;
+  double from[3], to[3], turn[3], work = 0;
   rigid_pose_outward(&o->start, o->centroid, from);
   free_object_centroid(o, to);
+  rotation_between(o->start.rotation, pose->rotation, turn);
+  rigid_pose_turn_outward(&o->start, turn, turn);
   for (int i = 0; i < 3; i++) {
-    work += o->mass * o->gravity[i] * (to[i] - from[i]);
+    double force = o->mass * o->gravity[i] + 0.5 * (o->applied_before[i] + o->applied[i]);
+    double moment = 0.5 * (o->applied_before[3 + i] + o->applied[3 + i]);
+    work += force * (to[i] - from[i]) + moment * turn[i];
   }
   return work;
 }

@@ -37,14 +37,18 @@ struct object_step {
 
 struct free_object {
   struct fe_model *model;
-  int index;               /* of the obstacle */
-  double mass;             /* kg */
-  double inertia[9];       /* about the centroid in the object's frame, kg m2 */
-  double centroid[3];      /* in the object's frame, m */
-  double gravity[3];       /* m/s2; the caller may change it */
-  double size;             /* from the centroid to its far end, m */
-  bool half;               /* half of it: it moves in the plane of symmetry only */
+  int index;          /* of the obstacle */
+  double mass;        /* kg */
+  double inertia[9];  /* about the centroid in the object's frame, kg m2 */
+  double centroid[3]; /* in the object's frame, m */
+  double gravity[3];  /* m/s2; the caller may change it */
+  double applied[6];  /* force and moment about the centroid besides, N, N m; the caller's */
+  double size;        /* from the centroid to its far end, m */
+  bool half;          /* half of it: it moves in the plane of symmetry only */
+  bool guided;        /* it only moves along `axis` (of length 1) and does not turn */
+  double axis[3];
   struct rigid_pose start; /* at the start of the step */
+  double applied_before[6];
   struct object_step step;
   /* Of the last linear system. */
   double *response; /* X, 6 x dof_count */
@@ -65,6 +69,10 @@ enum status free_object_create(struct equilibrium *solver, int index, double mas
                                struct free_object **out, struct error *error);
 void free_object_destroy(struct equilibrium *solver, struct free_object *object);
 
+/* From now on the object only moves along this axis (of length 1) and does not turn; forces and
+ * moments that ask for more are borne by something else. */
+void free_object_guide(struct free_object *object, const double axis[3]);
+
 /* Place of the centroid, m. */
 void free_object_centroid(const struct free_object *object, double centroid[3]);
 
@@ -72,15 +80,20 @@ void free_object_centroid(const struct free_object *object, double centroid[3]);
 void free_object_begin(struct free_object *object);
 void free_object_return(struct free_object *object);
 
-/* Work of its weight since then, J. */
+/* Work of its weight and of what is applied to it since then, J: of that the mean of before and now
+ * times the motion. */
 double free_object_weight_work(const struct free_object *object);
 
-/* Force of contact (as last evaluated) and weight on the object, N, and their moment about its
- * centroid, N m. */
+/* Force of contact (as last evaluated), weight and what is applied on the object, N, and their
+ * moment about its centroid, N m; of them what can move it. */
 void free_object_resultant(const struct free_object *object, double resultant[6]);
 
 /* Force that is missing for the balance at the last evaluation, N. */
 double free_object_unbalanced(const struct free_object *object);
+
+/* Whether the object would come back after a small push, by the tangent of the last factorisation:
+ * none of its motions gains force. Motions that nothing resists or drives count as stable. */
+bool free_object_stable(const struct free_object *object);
 
 /* The object's inertia in the system: residual g and tangent G of a step in time at the pose it has
  * now (free_motion.c). Added to both; nothing at rest. */

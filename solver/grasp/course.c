@@ -17,6 +17,9 @@ static const double shortest = 0.03, carried_step = 0.25;
 /* A leap that moves the body so many times as far as the steps before it is a jump. */
 static const double jump_factor = 3;
 
+/* Time in which a free object is let go, s. */
+static const double letting_go = 0.1;
+
 /* What the body and the object go through in one stage. */
 struct stage {
   enum grasp_stage kind;
@@ -33,7 +36,7 @@ struct course {
   struct stage stage;
   double along;        /* of the last converged state */
   double step;         /* part of the stage */
-  double shift;        /* of the object along the pull when the release begins, m */
+  double pulled;       /* part of the pull that has passed when the release begins */
   double time;         /* s */
   double pace;         /* of the nodes in the last step, rms, m for the whole stage */
   bool leaps;          /* a step over a place without equilibrium is tried */
@@ -51,30 +54,33 @@ static struct fe_load load_at(const struct course *c, double along) {
   double to = c->f->spec.load.pressure_to;
   double pressure = kind < STAGE_INFLATION    ? 0
                     : kind == STAGE_INFLATION ? along * to
-                    : kind == STAGE_PULL      ? to
-                                              : (1 - along) * to;
+                    : kind == STAGE_RELEASE   ? (1 - along) * to
+                                              : to;
   double dead = !solve_has_gravity(&c->f->spec) ? 0 : kind == STAGE_GRAVITY ? along : 1;
   return (struct fe_load){pressure, pressure, dead};
 }
 
-/* Shift of the object along the pull, m. */
-static double shift_at(const struct course *c, double along) {
-  return c->stage.kind == STAGE_PULL      ? along * c->f->grasp.pull.distance
-         : c->stage.kind == STAGE_RELEASE ? c->shift
-                                          : 0;
+/* Part of the pull that has passed. */
+static double pulled_at(const struct course *c, double along) {
+  return c->stage.kind == STAGE_PULL ? along : c->stage.kind == STAGE_RELEASE ? c->pulled : 0;
 }
 
+/* Leads the object to where it is then, or puts on a free one what draws on it. */
 static void place_object(struct course *c, double along) {
-  const struct grasp_spec *g = &c->f->grasp;
+  struct finger *f = c->f;
+  double pulled = pulled_at(c, along), from[3];
+  if (f->loose.object) {
+    loose_apply(f, c->stage.kind == STAGE_LETTING_GO ? 1 - along : 0, pulled);
+    return;
+  }
   double away = c->stage.kind == STAGE_GRAVITY    ? 1
                 : c->stage.kind == STAGE_APPROACH ? 1 - along
                                                   : 0;
-  double shift[3];
   for (int i = 0; i < 3; i++) {
-    shift[i] = away * g->approach.from[i] + shift_at(c, along) * g->pull.direction[i];
+    from[i] = away * f->grasp.approach.from[i];
   }
-  struct rigid_pose pose = grasp_pose(&g->object, shift);
-  model_place_obstacle(c->f->solve.model, c->f->obstacle, &pose);
+  grasp_lead_at(&f->grasp, from, pulled, &f->lead);
+  model_place_obstacle(f->solve.model, f->obstacle, &f->lead.pose);
 }
 
 /* ---- states ------------------------------------------------------------------------------- */
@@ -90,7 +96,8 @@ static enum status take(struct course *c, bool dynamic) {
       .stage = c->stage.kind, .along = c->along, .dynamic = dynamic, .recorded = is_record(c)};
   sample.value[GRASP_TIME] = c->time;
   sample.value[GRASP_PRESSURE] = load_at(c, c->along).pressure;
-  sample.value[GRASP_SHIFT] = shift_at(c, c->along);
+  sample.value[GRASP_SHIFT] = c->f->loose.object ? loose_way(c->f) : c->f->lead.way;
+  sample.value[GRASP_TURNED] = c->f->lead.turned;
   enum status status = finger_measure(c->f, &sample);
   if (status == STATUS_OK) {
     status = grasp_series_add(&c->report->series, &sample);
@@ -122,11 +129,16 @@ static void tell_energy(const struct course *c) {
   }
 }
 
-/* Notes a step of the ledger that ended at rest. */
-static void record_energy(struct course *c, const struct fe_load *load) {
-  struct obstacle_state o = model_obstacle_state(c->f->solve.model, c->f->obstacle);
-  struct energy_step step = {.friction = o.friction_work, .obstacle_work = o.motion_work};
-  energy_record(&c->f->energy, c->f->solve.model, &c->f->solve.state, load, &step);
+/* Takes over the state that was tried, with its part of the ledger. */
+static void accept(struct course *c, const struct fe_load *load) {
+  struct finger *f = c->f;
+  struct energy_step step = {.kinetic = 0};
+  dynamics_commit(f->dynamics, &f->trial, &step);
+  state_copy(f->solve.model, &f->solve.state, &f->trial);
+  energy_record(&f->energy, f->solve.model, &f->solve.state, load, &step);
+  if (f->loose.object) {
+    loose_watch(f);
+  }
   tell_energy(c);
 }
 
@@ -152,16 +164,24 @@ static bool has_jumped(const struct course *c, double target) {
   return way_of(c->f) > jump_factor * usual * (target - c->along);
 }
 
+static bool is_stable(const struct finger *f) {
+  const struct free_object *object = f->loose.object;
+  return f->solve.solver->negative_pivots == 0 && (!object || free_object_stable(object));
+}
+
 /* One step in equilibrium to `target`; on failure everything is as before. */
 static enum status rest_at(struct course *c, double target, int *iterations) {
   struct finger *f = c->f;
   struct fe_model *m = f->solve.model;
   struct fe_load load = load_at(c, target);
   double before = load_at(c, c->along).pressure;
+  if (f->loose.object) {
+    free_object_begin(f->loose.object);
+  }
   place_object(c, target);
   state_copy(m, &f->trial, &f->solve.state);
   enum status status = equilibrium_solve(f->solve.solver, &load, before, &f->trial, iterations);
-  if (status == STATUS_OK && f->solve.solver->negative_pivots > 0) {
+  if (status == STATUS_OK && !is_stable(f)) {
     status = STATUS_UNSTABLE_PATH;
   }
   if (status == STATUS_OK && has_jumped(c, target)) {
@@ -177,9 +197,7 @@ static enum status rest_at(struct course *c, double target, int *iterations) {
     return status;
   }
   c->pace = way_of(f) / (target - c->along);
-  model_commit_obstacles(m, &f->trial);
-  state_copy(m, &f->solve.state, &f->trial);
-  record_energy(c, &load);
+  accept(c, &load);
   c->time += (target - c->along) * c->stage.seconds;
   c->stages += target - c->along;
   c->along = target;
@@ -208,7 +226,17 @@ static enum status drive(void *context, double time, struct fe_load *load) {
   return STATUS_OK;
 }
 
-/* Follows the motion to `target` and on until the body rests. */
+/* Ends the motion of an object that has left the finger. */
+static enum status watch(void *context, const struct motion *motion, const struct fe_state *state,
+                         const struct fe_load *load) {
+  const struct drive *d = context;
+  (void)motion;
+  (void)state;
+  (void)load;
+  return d->c->f->loose.object && loose_watch(d->c->f) ? STATUS_DIVERGED : STATUS_OK;
+}
+
+/* Follows the motion to `target` and on until the body rests, or the object has left. */
 static enum status carry_to(struct course *c, double target) {
   struct finger *f = c->f;
   struct drive driven = {c, f->motion.time, target};
@@ -216,7 +244,7 @@ static enum status carry_to(struct course *c, double target) {
   struct carry_report report;
   double seconds = (target - c->along) * c->stage.seconds, start = f->motion.time;
   struct fe_load load = load_at(c, c->along);
-  options.drive = (struct dynamics_drive){.drive = drive, .context = &driven};
+  options.drive = (struct dynamics_drive){drive, watch, &driven};
   options.driven = seconds;
   options.longest += seconds;
   options.wall_s = 0; /* the time limit of the job holds */
@@ -231,6 +259,10 @@ static enum status carry_to(struct course *c, double target) {
             report.rested ? "rests" : "moves");
   }
   tell_energy(c);
+  if (f->loose.fell) {
+    target = driven_along(&driven, f->motion.time);
+    status = STATUS_OK;
+  }
   c->jumps++;
   c->report->carried++;
   c->moving += target - c->along;
@@ -243,33 +275,35 @@ static enum status carry_to(struct course *c, double target) {
 
 /* ---- stages ------------------------------------------------------------------------------- */
 
-/* Whether the pull is over because the object has come free, and far enough away. */
+/* Whether the stage is over because the object has come free, and far enough away. */
 static bool is_free(struct course *c) {
-  if (c->stage.kind != STAGE_PULL) {
-    return false;
+  if (c->f->loose.object || c->stage.kind != STAGE_PULL) {
+    return c->f->loose.fell;
   }
   const struct grasp_series *series = &c->report->series;
-  const double *value = series->sample[series->count - 1].value;
-  double shift = value[GRASP_SHIFT];
-  if (value[GRASP_AREA] > 0) {
+  if (series->sample[series->count - 1].value[GRASP_AREA] > 0) {
     c->touched = true;
     c->report->came_free = false;
     return false;
   }
   if (c->touched || c->along == 0) {
     c->report->came_free = true;
-    c->report->free_at = shift;
+    c->report->free_at = c->along;
     c->touched = false;
   }
-  const struct grasp_pull *pull = &c->f->grasp.pull;
   return c->report->came_free &&
-         shift - c->report->free_at > pull->after_contact * pull->distance - 1e-12;
+         c->along - c->report->free_at > c->f->grasp.pull.after_contact - 1e-9;
 }
 
 /* The way to the goal in equal steps: a short one at its end would gain nothing. */
 static double next_target(const struct course *c, double goal) {
   double count = ceil((goal - c->along) / c->step - 0.05);
   return count <= 1 ? goal : c->along + (goal - c->along) / count;
+}
+
+/* What is let go is not held again: it comes free whole. */
+static double carried_target(const struct course *c, double goal) {
+  return c->stage.kind == STAGE_LETTING_GO ? 1 : next_target(c, goal);
 }
 
 /* Where steps have become too short, tries long ones: the place at which Newton's method fails may
@@ -315,7 +349,7 @@ static enum status reach(struct course *c, double goal, bool *over) {
       if (moves && (!c->f->grasp.dynamics || c->jumps >= JUMPS_MAX)) {
         return STATUS_STEP_MINIMUM;
       }
-      status = moves ? carry_to(c, next_target(c, goal)) : status;
+      status = moves ? carry_to(c, carried_target(c, goal)) : status;
     } else if (iterations <= EASY_ITERATIONS) {
       c->step = fmin(grow_factor * c->step, c->stage.full);
     }
@@ -330,20 +364,36 @@ static enum status reach(struct course *c, double goal, bool *over) {
   return STATUS_OK;
 }
 
+/* Pace and longest step of the leg of the pull that the part `along` is on. */
+static void enter_leg(struct course *c, double along) {
+  const struct finger *f = c->f;
+  const struct grasp_pull *pull = &f->grasp.pull;
+  if (c->stage.kind != STAGE_PULL || pull->leg_count == 0) {
+    return;
+  }
+  const struct grasp_leg *leg = &pull->leg[grasp_lead_leg(pull, along)];
+  double way = vec3_norm(leg->move) + vec3_norm(leg->turn) * f->reach;
+  c->stage.seconds = pull->leg_count * leg->seconds;
+  c->stage.full = fmin(0.1, f->grasp.longest_step / way) / pull->leg_count;
+  c->step = fmin(c->step, c->stage.full);
+}
+
 static enum status follow_stage(struct course *c, const struct stage *stage) {
   bool over = false;
   c->stage = *stage;
   c->along = 0;
-  c->step = 0.5 * stage->full;
+  enter_leg(c, 0);
+  c->step = 0.5 * c->stage.full;
   c->steps = c->jumps = 0;
   c->pace = 0;
   c->report->stage = stage->kind;
   enum status status = take(c, false);
   over = status == STATUS_OK && is_free(c);
   for (int k = 1; k <= stage->records && status == STATUS_OK && !over; k++) {
+    enter_leg(c, (double)k / stage->records);
     status = reach(c, (double)k / stage->records, &over);
   }
-  c->shift = shift_at(c, c->along);
+  c->pulled = pulled_at(c, c->along);
   return status;
 }
 
@@ -360,9 +410,11 @@ static int plan(const struct finger *f, struct stage out[STAGE_COUNT]) {
                                   way / g->approach.rate};
   }
   out[count++] = (struct stage){STAGE_INFLATION, steps, fmin(0.1, 1.0 / steps), g->inflation_time};
-  if (g->pull.distance > 0) {
-    out[count++] = (struct stage){STAGE_PULL, g->pull.steps, fmin(0.1, longest / g->pull.distance),
-                                  g->pull.distance / g->pull.rate};
+  if (g->object.free) {
+    out[count++] = (struct stage){STAGE_LETTING_GO, 4, 0.1, letting_go};
+  }
+  if (grasp_pulls(g)) { /* pace and longest step: see enter_leg */
+    out[count++] = (struct stage){STAGE_PULL, g->pull.steps, 0.1, g->inflation_time};
   }
   if (g->release) {
     out[count++] = (struct stage){STAGE_RELEASE, steps, fmin(0.1, 1.0 / steps), g->inflation_time};
@@ -394,12 +446,16 @@ enum status course_follow(struct finger *f, const struct course_visit *visit,
   int count = plan(f, stages);
   *report = (struct course_report){.along = 0};
   c.stage = stages[0];
+  place_object(&c, 0);
   struct fe_load none = load_at(&c, 0);
   enum status status = model_evaluate(f->solve.model, &f->solve.state, &none, false);
   model_commit_obstacles(f->solve.model, &f->solve.state);
   energy_start(&f->energy, f->solve.model, &f->solve.state, &none, 0);
-  for (int k = 0; k < count && status == STATUS_OK; k++) {
-    status = follow_stage(&c, &stages[k]);
+  for (int k = 0; k < count && status == STATUS_OK && !f->loose.fell; k++) {
+    status = stages[k].kind == STAGE_LETTING_GO ? loose_begin(f, error) : STATUS_OK;
+    if (status == STATUS_OK) {
+      status = follow_stage(&c, &stages[k]);
+    }
   }
   close_ledger(&c);
   if (status != STATUS_OK) {

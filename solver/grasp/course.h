@@ -3,13 +3,15 @@
  *   gravity    the weight comes on, the object stands where the approach begins
  *   approach   the object moves in a straight line to its position
  *   inflation  the pressure rises
- *   pull       the object moves along the pull, at full pressure
+ *   letting go what holds a free object is taken away: the finger bears it alone, or it falls
+ *   pull       the object moves along the pull, or a force draws on it, at full pressure
  *   release    the pressure falls to 0
  *
  * Each goes in steps of equilibrium that shrink where it is not found and grow where that was easy.
  * Where the steps get too short the body jumps: its motion is followed (solver/fe/dynamics_carry.h)
  * while the stage goes on at its rate, until the body rests; then on in equilibrium. A pull ends
- * early some way after the object came free. Every stage has limits of steps and of carryings. */
+ * early some way after the object came free, the course when a free object has left the finger.
+ * Every stage has limits of steps and of carryings. */
 #ifndef PNEULAB_GRASP_COURSE_H
 #define PNEULAB_GRASP_COURSE_H
 
@@ -29,7 +31,7 @@ struct course_report {
   enum grasp_stage stage;     /* the last one that was begun */
   double along;               /* part of it that has passed */
   bool came_free;             /* contact was lost in the pull */
-  double free_at;             /* shift of the object then, m */
+  double free_at;             /* part of the pull then */
   double in_motion;           /* part of all stages that was followed in motion, 0 to 1 */
   int carried;                /* jumps that were followed */
   double energy_error;        /* |what the ledger of energies misses| by the works done, 0 to 1 */

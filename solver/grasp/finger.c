@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <string.h>
+#include "solver/base/vec3.h"
 #include "solver/grasp/conformity.h"
 #include "solver/job/grasp_shape.h"
 #include "solver/job/reader.h"
@@ -54,6 +55,16 @@ static enum status add_object(struct finger *f, struct error *error) {
   m->obstacle[f->obstacle]->stiffness *= f->grasp.stiffness;
   m->obstacle[f->obstacle]->tangential *= f->grasp.stiffness;
   return STATUS_OK;
+}
+
+/* How far the object reaches around its origin; a plane as far as the body is long. */
+static double reach_of(const struct finger *f) {
+  double low[3], high[3], square = 0;
+  rigid_shape_bounds(f->shape, low, high);
+  for (int i = 0; i < 3; i++) {
+    square += pow(fmax(fabs(low[i]), fabs(high[i])), 2);
+  }
+  return isfinite(square) ? sqrt(square) : f->solve.solver->length;
 }
 
 static enum status check_clearance(struct finger *f, struct error *error) {
@@ -111,6 +122,7 @@ enum status finger_prepare(const struct job_spec *job, int number, bool half, st
     status = solve_prepare_solver(&f->spec, &f->solve, error);
   }
   if (status == STATUS_OK) {
+    f->reach = reach_of(f);
     status = check_clearance(f, error);
   }
   if (status == STATUS_OK && state_create(f->solve.model, &f->trial) != STATUS_OK) {
@@ -120,6 +132,7 @@ enum status finger_prepare(const struct job_spec *job, int number, bool half, st
 }
 
 void finger_release(struct finger *f) {
+  loose_end(f);
   motion_release(&f->motion);
   dynamics_destroy(f->dynamics);
   state_release(&f->trial);
@@ -138,12 +151,10 @@ static void measure_force(const struct finger *f, const struct obstacle_state *o
     value[GRASP_FORCE_X + i] = half && i == 1 ? 0 : f->whole * o->force[i];
     value[GRASP_MOMENT_X + i] = half && i != 1 ? 0 : f->whole * o->moment[i];
   }
-  const double *way = f->grasp.blocked ? f->grasp.blocked_direction : f->grasp.pull.direction;
+  const double *way = f->grasp.blocked ? f->grasp.blocked_direction : f->lead.direction;
   double sign = f->grasp.blocked ? 1 : -1;
-  value[GRASP_HOLD] = 0;
-  for (int i = 0; i < 3; i++) {
-    value[GRASP_HOLD] += sign * way[i] * value[GRASP_FORCE_X + i];
-  }
+  value[GRASP_HOLD] = sign * vec3_dot(way, value + GRASP_FORCE_X);
+  value[GRASP_TWIST] = -vec3_dot(f->lead.axis, value + GRASP_MOMENT_X);
 }
 
 static double bending_angle(const struct finger *f, enum status *status) {

@@ -4,8 +4,10 @@
 
 #include "solver/fe/dynamics_carry.h"
 #include "solver/fe/obstacle.h"
+#include "solver/grasp/loose.h"
 #include "solver/grasp/sample.h"
 #include "solver/job/grasp.h"
+#include "solver/job/grasp_lead.h"
 #include "solver/solve.h"
 
 struct finger {
@@ -13,8 +15,11 @@ struct finger {
   struct grasp_spec grasp; /* in the frame of the finger */
   struct rigid_shape *shape;
   struct solve solve;
-  int obstacle;          /* number of the object in the model */
-  struct fe_state trial; /* step that is being tried */
+  double reach;           /* of the object from the origin of its frame, m */
+  int obstacle;           /* number of the object in the model */
+  struct grasp_lead lead; /* where the course has led the object, and in which direction */
+  struct loose loose;     /* the object once it has been let go */
+  struct fe_state trial;  /* step that is being tried */
   struct dynamics *dynamics;
   struct motion motion;
   struct energy energy;

@@ -23,7 +23,7 @@ struct run {
 
 /* Share of a finger's work that has passed at the end of each stage, about. */
 static double passed(const struct run *run, const struct grasp_sample *sample) {
-  bool pull = run->spec->grasp->pull.distance > 0;
+  bool pull = grasp_pulls(run->spec->grasp);
   double inflated = pull ? 0.4 : 1;
   switch (sample->stage) {
   case STAGE_GRAVITY:
@@ -32,6 +32,8 @@ static double passed(const struct run *run, const struct grasp_sample *sample) {
     return 0.02 + 0.08 * sample->along;
   case STAGE_INFLATION:
     return 0.1 + (inflated - 0.1) * sample->along;
+  case STAGE_LETTING_GO:
+    return inflated;
   case STAGE_PULL:
     return inflated + (0.9 - inflated) * sample->along;
   case STAGE_RELEASE:

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <string.h>
+#include "solver/base/vec3.h"
 #include "solver/job/json.h"
 
 /* Share of the normal force beyond which the body slips as a whole. */
@@ -67,15 +68,23 @@ static const struct grasp_sample *last_of(const struct grasp_series *s, enum gra
   return last;
 }
 
+static bool touches(const struct grasp_sample *sample) {
+  return sample && sample->value[GRASP_AREA] > 0;
+}
+
 const char *gripper_outcome(const struct gripper *g) {
   const struct grasp_series *s = &g->sum;
+  const struct grasp_sample *let_go = last_of(s, STAGE_LETTING_GO);
   bool touched = false;
   for (size_t i = 0; i < s->count; i++) {
     touched = touched || s->sample[i].value[GRASP_AREA] > 0;
   }
   const struct grasp_sample *end = last_of(s, STAGE_PULL);
   end = end ? end : s->count > 0 ? &s->sample[s->count - 1] : NULL;
-  return !touched ? "never touched" : end && end->value[GRASP_AREA] > 0 ? "held" : "released";
+  return let_go && !touches(let_go) ? "fell"
+         : !touched                 ? "never touched"
+         : touches(end)             ? "held"
+                                    : "released";
 }
 
 /* Force over the pull: peak, mean while there is contact, where it begins to slip and comes free.
@@ -83,7 +92,7 @@ const char *gripper_outcome(const struct gripper *g) {
 static void set_pull(const struct gripper *g, json_t *metrics) {
   const struct grasp_series *s = &g->sum;
   const struct grasp_sample *last = NULL;
-  double peak = -INFINITY, peak_at = 0, work = 0, way = 0, slip = NAN, free_at = NAN;
+  double peak = -INFINITY, peak_at = 0, work = 0, twist = 0, way = 0, slip = NAN, free_at = NAN;
   for (size_t i = 0; i < s->count; i++) {
     const struct grasp_sample *now = &s->sample[i];
     const double *v = now->value;
@@ -98,7 +107,9 @@ static void set_pull(const struct gripper *g, json_t *metrics) {
     slip = isnan(slip) && slips ? v[GRASP_SHIFT] : slip;
     if (last && (last->value[GRASP_AREA] > 0 || v[GRASP_AREA] > 0)) {
       double step = v[GRASP_SHIFT] - last->value[GRASP_SHIFT];
+      double turn = v[GRASP_TURNED] - last->value[GRASP_TURNED];
       work += 0.5 * step * (v[GRASP_HOLD] + last->value[GRASP_HOLD]);
+      twist += 0.5 * turn * (v[GRASP_TWIST] + last->value[GRASP_TWIST]);
       way += step;
     }
     free_at = v[GRASP_AREA] > 0 ? NAN : isnan(free_at) ? v[GRASP_SHIFT] : free_at;
@@ -110,7 +121,7 @@ static void set_pull(const struct gripper *g, json_t *metrics) {
   json_set_finite(metrics, "grasp_force_peak_N", fmax(peak, 0));
   json_set_finite(metrics, "grasp_force_peak_at_mm", 1e3 * peak_at);
   json_set_finite(metrics, "grasp_force_mean_N", way > 0 ? work / way : 0);
-  json_set_finite(metrics, "pull_work_mJ", 1e3 * work);
+  json_set_finite(metrics, "pull_work_mJ", 1e3 * (work + twist));
   json_set_finite(metrics, "slip_onset_mm", 1e3 * slip);
   json_set_finite(metrics, "released_at_mm", 1e3 * free_at);
 }
@@ -135,6 +146,45 @@ static void set_hold(const struct gripper *g, json_t *metrics) {
   json_decref(object);
 }
 
+/* How a free object is held when it has been let go. */
+static void set_free(const struct gripper *g, json_t *metrics) {
+  const struct grasp_series *s = &g->sum;
+  const struct grasp_spec *spec = g->spec->grasp;
+  const struct grasp_sample *end = last_of(s, STAGE_LETTING_GO);
+  double weight = spec->object.mass * vec3_norm(spec->gravity), most = 0;
+  if (!end) {
+    return;
+  }
+  for (size_t i = 0; i < s->count; i++) {
+    const struct grasp_sample *now = &s->sample[i];
+    if (now->stage == STAGE_LETTING_GO) { /* all at rest, but for one that has fallen */
+      most = fmax(most, now->value[GRASP_HOLD]);
+    }
+  }
+  if (!touches(end) || end->along == 1) { /* else it is not known */
+    json_set_finite(metrics, "held", touches(end));
+  }
+  json_set_finite(metrics, "object_displacement_mm", 1e3 * end->value[GRASP_SHIFT]);
+  if (weight > 0) {
+    json_set_finite(metrics, "object_weight_N", weight);
+    json_set_finite(metrics, "weight_carried_N", most);
+  }
+}
+
+/* What resists a pull that turns the object. */
+static void set_twist(const struct gripper *g, json_t *metrics) {
+  const struct grasp_series *s = &g->sum;
+  double most = 0;
+  bool turned = false;
+  for (size_t i = 0; i < s->count; i++) {
+    turned = turned || s->sample[i].value[GRASP_TURNED] > 0;
+    most = fmax(most, s->sample[i].value[GRASP_TWIST]);
+  }
+  if (turned) {
+    json_set_finite(metrics, "grasp_moment_peak_N_mm", 1e3 * most);
+  }
+}
+
 json_t *gripper_metrics(const struct gripper *g) {
   json_t *metrics = json_object();
   double energy = 0, motion = 0;
@@ -150,7 +200,9 @@ json_t *gripper_metrics(const struct gripper *g) {
   }
   const double *end = g->sum.sample[g->sum.count - 1].value;
   set_pull(g, metrics);
+  set_twist(g, metrics);
   set_hold(g, metrics);
+  set_free(g, metrics);
   json_set_finite(metrics, "friction_work_mJ", 1e3 * end[GRASP_RUBBED]);
   json_set_finite(metrics, "energy_error_pct", 100 * energy);
   json_set_finite(metrics, "dynamic_share_pct", 100 * motion);

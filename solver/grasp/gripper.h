@@ -32,7 +32,8 @@ enum status gripper_sum(struct gripper *gripper);
 /* The metrics, a new reference, NULL when memory runs out. */
 json_t *gripper_metrics(const struct gripper *gripper);
 
-/* "released": the object came free; "held": it did not; "never touched": there was no contact. */
+/* "released": the object came free in the pull; "fell": when it was let go; "held": it did neither;
+ * "never touched": there was no contact. */
 const char *gripper_outcome(const struct gripper *gripper);
 
 #endif

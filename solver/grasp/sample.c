@@ -15,6 +15,7 @@ static const struct {
     [GRASP_TIME] = {"time_s", 1, TOGETHER_MOST},
     [GRASP_PRESSURE] = {"pressure_kPa", 1e-3, TOGETHER_SAME},
     [GRASP_SHIFT] = {"displacement_mm", 1e3, TOGETHER_SAME},
+    [GRASP_TURNED] = {"turned_deg", 180 / M_PI, TOGETHER_SAME},
     [GRASP_FORCE_X] = {"force_x_N", 1, TOGETHER_SUM},
     [GRASP_FORCE_Y] = {"force_y_N", 1, TOGETHER_SUM},
     [GRASP_FORCE_Z] = {"force_z_N", 1, TOGETHER_SUM},
@@ -22,6 +23,7 @@ static const struct {
     [GRASP_MOMENT_Y] = {"moment_y_N_mm", 1e3, TOGETHER_SUM},
     [GRASP_MOMENT_Z] = {"moment_z_N_mm", 1e3, TOGETHER_SUM},
     [GRASP_HOLD] = {"grasp_force_N", 1, TOGETHER_SUM},
+    [GRASP_TWIST] = {"grasp_moment_N_mm", 1e3, TOGETHER_SUM},
     [GRASP_NORMAL] = {"normal_force_N", 1, TOGETHER_SUM},
     [GRASP_FRICTION] = {"friction_force_N", 1, TOGETHER_SUM},
     [GRASP_AREA] = {"contact_area_mm2", 1e6, TOGETHER_SUM},
@@ -36,8 +38,8 @@ static const struct {
 };
 
 const char *grasp_stage_word(enum grasp_stage stage) {
-  static const char *const words[STAGE_COUNT] = {"gravity", "approach", "inflation", "pull",
-                                                 "release"};
+  static const char *const words[STAGE_COUNT] = {"gravity",    "approach", "inflation",
+                                                 "letting go", "pull",     "release"};
   return words[stage];
 }
 

@@ -11,6 +11,7 @@ enum grasp_stage {
   STAGE_GRAVITY,
   STAGE_APPROACH,
   STAGE_INFLATION,
+  STAGE_LETTING_GO,
   STAGE_PULL,
   STAGE_RELEASE,
   STAGE_COUNT
@@ -20,14 +21,17 @@ enum grasp_stage {
 enum grasp_number {
   GRASP_TIME,     /* s, since the course began; states at rest take no time of their own */
   GRASP_PRESSURE, /* Pa */
-  GRASP_SHIFT,    /* of the object from its position, along the pull, m */
+  GRASP_SHIFT,    /* way of the object from its position along the pull, or, of a free one, distance
+                   * from where it was let go, m */
+  GRASP_TURNED,   /* sum of the angles by which the pull has turned it, rad */
   GRASP_FORCE_X,  /* N */
   GRASP_FORCE_Y,
   GRASP_FORCE_Z,
   GRASP_MOMENT_X, /* about the origin of the object's frame, N m */
   GRASP_MOMENT_Y,
   GRASP_MOMENT_Z,
-  GRASP_HOLD,       /* against the pull: its direction times minus the force, N */
+  GRASP_HOLD,       /* against the pull, or the weight: its direction times minus the force, N */
+  GRASP_TWIST,      /* against the turn of the pull: its axis times minus the moment, N m */
   GRASP_NORMAL,     /* sum of the normal forces, N */
   GRASP_FRICTION,   /* sum of the friction forces, N */
   GRASP_AREA,       /* deformed, m2 */

@@ -59,6 +59,12 @@ struct grasp_spec grasp_of_finger(const struct grasp_spec *spec, int finger) {
     vectors[i][2] -= i == 0 ? f->radius : 0;
     turn(back, vectors[i]);
   }
+  for (int i = 0; i < seen.pull.leg_count; i++) {
+    turn(around, seen.pull.leg[i].move);
+    turn(around, seen.pull.leg[i].turn);
+    turn(back, seen.pull.leg[i].move);
+    turn(back, seen.pull.leg[i].turn);
+  }
   turn_columns(around, seen.object.rotation);
   turn_columns(back, seen.object.rotation);
   return seen;
@@ -139,9 +145,32 @@ static bool same_pose(const struct grasp_object *a, const struct grasp_object *b
   return same;
 }
 
+bool grasp_pulls(const struct grasp_spec *spec) {
+  return spec->pull.leg_count > 0 || spec->pull.force > 0;
+}
+
+static bool same_way(const struct grasp_pull *a, const struct grasp_pull *b) {
+  bool same = near(a->direction, b->direction, same_direction);
+  for (int i = 0; i < a->leg_count; i++) {
+    same = same && near(a->leg[i].move, b->leg[i].move, same_place) &&
+           near(a->leg[i].turn, b->leg[i].turn, same_direction);
+  }
+  return same;
+}
+
+/* A mirror image about y = 0 turns the other way, but for turns about y. */
+static bool symmetric_way(const struct grasp_pull *pull) {
+  bool symmetric = fabs(pull->direction[1]) <= same_direction;
+  for (int i = 0; i < pull->leg_count; i++) {
+    const struct grasp_leg *leg = &pull->leg[i];
+    symmetric = symmetric && fabs(leg->move[1]) <= same_place &&
+                hypot(leg->turn[0], leg->turn[2]) <= same_direction;
+  }
+  return symmetric;
+}
+
 bool grasp_same(const struct grasp_spec *a, const struct grasp_spec *b) {
-  return near(a->approach.from, b->approach.from, same_place) &&
-         near(a->pull.direction, b->pull.direction, same_direction) &&
+  return near(a->approach.from, b->approach.from, same_place) && same_way(&a->pull, &b->pull) &&
          near(a->gravity, b->gravity, same_direction) && same_pose(&a->object, &b->object);
 }
 
@@ -151,7 +180,6 @@ bool grasp_symmetric(const struct grasp_spec *spec) {
   for (int j = 0; j < 3; j++) {
     mirrored.rotation[1][j] = -mirrored.rotation[1][j];
   }
-  return fabs(spec->approach.from[1]) <= same_place &&
-         fabs(spec->pull.direction[1]) <= same_direction &&
+  return fabs(spec->approach.from[1]) <= same_place && symmetric_way(&spec->pull) &&
          fabs(spec->gravity[1]) <= same_direction && same_pose(&spec->object, &mirrored);
 }

@@ -12,7 +12,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { GRASP_PROFILE_MAX = 64, GRASP_FINGERS_MAX = 6 };
+enum { GRASP_PROFILE_MAX = 64, GRASP_FINGERS_MAX = 6, GRASP_LEGS_MAX = 16 };
 
 enum grasp_form {
   GRASP_SPHERE,
@@ -47,6 +47,8 @@ struct grasp_object {
   double place[3];       /* of its frame, m */
   double rotation[3][3]; /* from its frame: columns are its axes */
   double friction;       /* Coulomb's coefficient */
+  bool free;             /* let go after the inflation */
+  double mass;           /* of a free object, kg, spread evenly over its volume */
 };
 
 struct grasp_approach {
@@ -55,12 +57,21 @@ struct grasp_approach {
   int steps;      /* recorded */
 };
 
+/* A part of the way on which a pull leads the object: it is shifted and turned at one pace. */
+struct grasp_leg {
+  double move[3]; /* m */
+  double turn[3]; /* rotation vector about the place of its frame, rad; its length may be any */
+  double seconds;
+};
+
+/* A fixed object is led along legs, a free one is drawn by a force; without either no pull. */
 struct grasp_pull {
-  double direction[3];  /* of length 1 */
-  double distance;      /* m; 0: there is no pull */
-  double rate;          /* m/s */
-  int steps;            /* recorded */
-  double after_contact; /* part of the distance that is pulled on after contact is lost */
+  int leg_count;
+  struct grasp_leg leg[GRASP_LEGS_MAX];
+  double direction[3];  /* of the force, or of a straight pull; of length 1 */
+  double force;         /* N, what it rises to */
+  int steps;            /* recorded, of all legs together */
+  double after_contact; /* part of the pull that goes on after contact is lost */
 };
 
 struct grasp_fingers {
@@ -91,6 +102,9 @@ void grasp_spec_destroy(struct grasp_spec *spec);
 /* The same grasp in the frame of a finger, which must be below fingers.count: object, ways and
  * gravity. What the spec owns is shared. */
 struct grasp_spec grasp_of_finger(const struct grasp_spec *spec, int finger);
+
+/* Whether the grasp has a pull. */
+bool grasp_pulls(const struct grasp_spec *spec);
 
 /* Whether two fingers see the same: object, ways and gravity in their frames agree. */
 bool grasp_same(const struct grasp_spec *a, const struct grasp_spec *b);

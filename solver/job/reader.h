@@ -122,6 +122,25 @@ enum status reader_snap(const struct reader *reader, const json_t *document, str
  * job. Also STATUS_GEOMETRY. */
 enum status reader_grasp(const struct reader *reader, const json_t *document, struct job_spec *job);
 
+struct grasp_pull;
+
+/* Fills *pull from the value of its key (NULL: there is none). STATUS_OK or INVALID. */
+enum status reader_grasp_pull(const struct reader *reader, const json_t *value,
+                              struct grasp_pull *pull);
+
+/* Whether object and course of the grasp, which has been read, suit each other: what a free object
+ * needs, and what it excludes. STATUS_OK or INVALID. */
+enum status reader_grasp_check(const struct reader *reader, const json_t *document,
+                               const struct job_spec *job);
+
+/* Three lengths, m. */
+void reader_vector(const struct reader *reader, const json_t *value, double out[3]);
+
+/* A direction, made 1 long. STATUS_OK, or STATUS_INVALID at `pointer` for one without length;
+ * `what` is its name in the error. */
+enum status reader_direction(const struct reader *reader, const json_t *value, const char *pointer,
+                             const char *what, double out[3]);
+
 /* As reader_hlpv, for name, timeout and identify; checks the data. */
 enum status reader_identify(const struct reader *reader, const json_t *document,
                             struct job_spec *job);

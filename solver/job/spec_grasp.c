@@ -18,15 +18,14 @@ static enum status no_memory(const struct reader *reader) {
 
 /* ---- vectors ------------------------------------------------------------------------------ */
 
-static void read_vector(const struct reader *reader, const json_t *value, double out[3]) {
+void reader_vector(const struct reader *reader, const json_t *value, double out[3]) {
   for (size_t i = 0; i < 3; i++) {
     out[i] = reader_quantity(reader, json_array_get(value, i), "mm");
   }
 }
 
-/* A direction, made 1 long. */
-static enum status read_direction(const struct reader *reader, const json_t *value,
-                                  const char *pointer, const char *what, double out[3]) {
+enum status reader_direction(const struct reader *reader, const json_t *value, const char *pointer,
+                             const char *what, double out[3]) {
   double square = 0;
   for (size_t i = 0; i < 3; i++) {
     out[i] = json_number_value(json_array_get(value, i));
@@ -94,7 +93,7 @@ static enum status read_shape(const struct reader *reader, const json_t *value,
   shape->base_diameter = reader_member(reader, value, "base_diameter", "mm", 0.0);
   shape->tip_diameter = reader_member(reader, value, "tip_diameter", "mm", 0.0);
   shape->rounding = reader_member(reader, value, rounding, "mm", 0.0);
-  read_vector(reader, json_object_get(value, "size"), shape->size);
+  reader_vector(reader, json_object_get(value, "size"), shape->size);
   read_profile(reader, value, shape);
   enum status status = shape->form == GRASP_SURFACE ? read_stl(reader, value, shape) : STATUS_OK;
   struct rigid_shape *made = NULL;
@@ -137,18 +136,20 @@ static enum status read_object(const struct reader *reader, const json_t *value,
   static const double unturned[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   double axis[3];
   const json_t *rotation = json_object_get(value, "rotation");
-  read_vector(reader, json_object_get(value, "position"), object->place);
+  reader_vector(reader, json_object_get(value, "position"), object->place);
   object->friction = json_number_value(json_object_get(value, "friction"));
+  object->free = has_word(value, "motion", "free");
+  object->mass = reader_member(reader, value, "mass", "g", 0.0);
   memcpy(object->rotation, unturned, sizeof unturned);
-  enum status status = read_direction(reader, json_object_get(value, "axis"), "/object/axis",
-                                      "the axis of the object", axis);
+  enum status status = reader_direction(reader, json_object_get(value, "axis"), "/object/axis",
+                                        "the axis of the object", axis);
   if (status != STATUS_OK) {
     return status;
   }
   turn_to(axis, object->rotation);
   if (rotation) {
-    status = read_direction(reader, json_object_get(rotation, "axis"), "/object/rotation/axis",
-                            "the axis of the rotation", axis);
+    status = reader_direction(reader, json_object_get(rotation, "axis"), "/object/rotation/axis",
+                              "the axis of the rotation", axis);
     if (status != STATUS_OK) {
       return status;
     }
@@ -164,8 +165,8 @@ static enum status read_object(const struct reader *reader, const json_t *value,
 static enum status read_blocked(const struct reader *reader, const json_t *value,
                                 struct grasp_spec *spec) {
   double *to = spec->blocked_direction;
-  enum status status = read_direction(reader, json_object_get(value, "direction"),
-                                      "/grasp/blocked/direction", "the direction", to);
+  enum status status = reader_direction(reader, json_object_get(value, "direction"),
+                                        "/grasp/blocked/direction", "the direction", to);
   if (status != STATUS_OK) {
     return status;
   }
@@ -187,21 +188,12 @@ static enum status read_blocked(const struct reader *reader, const json_t *value
 static enum status read_ways(const struct reader *reader, const json_t *course,
                              struct grasp_spec *spec) {
   const json_t *approach = json_object_get(course, "approach");
-  const json_t *pull = json_object_get(course, "pull");
-  read_vector(reader, json_object_get(approach, "from"), spec->approach.from);
+  reader_vector(reader, json_object_get(approach, "from"), spec->approach.from);
   spec->approach.rate = reader_member(reader, approach, "rate", "mm/s", 0.0);
   spec->approach.steps = reader_count(approach, "steps", 0);
   spec->inflation_time = reader_member(reader, course, "inflation_time", "s", 0.0);
   spec->release = json_is_true(json_object_get(course, "release"));
-  if (!pull) {
-    return STATUS_OK;
-  }
-  spec->pull.distance = reader_member(reader, pull, "distance", "mm", 0.0);
-  spec->pull.rate = reader_member(reader, pull, "rate", "mm/s", 0.0);
-  spec->pull.steps = reader_count(pull, "steps", 0);
-  spec->pull.after_contact = json_number_value(json_object_get(pull, "after_contact"));
-  return read_direction(reader, json_object_get(pull, "direction"), "/grasp/pull/direction",
-                        "the direction of the pull", spec->pull.direction);
+  return reader_grasp_pull(reader, json_object_get(course, "pull"), &spec->pull);
 }
 
 static void read_rest(const struct reader *reader, const json_t *course, struct grasp_spec *spec) {
@@ -266,5 +258,5 @@ enum status reader_grasp(const struct reader *reader, const json_t *document,
     status = blocked ? read_blocked(reader, blocked, spec)
                      : read_object(reader, json_object_get(document, "object"), &spec->object);
   }
-  return status;
+  return status == STATUS_OK ? reader_grasp_check(reader, document, job) : status;
 }

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "solver/job/grasp.h"
+#include "solver/job/grasp_lead.h"
 #include "tests/unit/suite.h"
 
 static const char grasp[] =
@@ -36,6 +36,20 @@ static const char grasp[] =
   { "/object", NULL }
 #define FINGERS                                                                                    \
   { "/grasp/fingers", "{\"count\": 3, \"radius\": \"30 mm\", \"tilt\": \"10 deg\"}" }
+
+#define FREE(mass)                                                                                 \
+  {"/object/motion", "\"free\""}, {                                                                \
+    "/object/mass", "\"" mass "\""                                                                 \
+  }
+#define PULL(keys)                                                                                 \
+  { "/grasp/pull", "{" keys "}" }
+#define TURN(axis) "{\"turn\": {\"axis\": [" axis "], \"angle\": \"90 deg\"}}"
+#define BALL(place)                                                                                \
+  {                                                                                                \
+    "/object", "{\"shape\": {\"form\": \"sphere\", \"diameter\": \"40 mm\"}, \"position\": " place \
+               ", \"friction\": 0.5, \"motion\": \"free\", \"mass\": \"50 g\"}"                    \
+  }
+#define HELD_BY_THREE(place) BALL(place), {"/grasp", "{}"}, FINGERS
 
 static const struct variant variants[] = {
     {grasp, {{NULL}}, NULL, NULL},
@@ -108,7 +122,7 @@ static const struct variant variants[] = {
      {{"/object/rotation", "{\"axis\": [0, 0, 0], \"angle\": \"5 deg\"}"}},
      "/object/rotation/axis",
      "has no length"},
-    {grasp, {{"/object/motion", "\"free\""}}, "/object/motion", "not known here"},
+    {grasp, {{"/object/colour", "\"red\""}}, "/object/colour", "not known here"},
     /* courses */
     {grasp, {{"/grasp/pull/direction", "[0, 0, 0]"}}, "/grasp/pull/direction", "has no length"},
     {grasp, {{"/grasp/pull/distance", "\"0 mm\""}}, "/grasp/pull/distance", ""},
@@ -118,6 +132,56 @@ static const struct variant variants[] = {
      "/grasp/fingers/count",
      "6"},
     {grasp, {NO_OBJECT}, "", "\"object\" is missing"},
+    {grasp, {FREE("-1 g")}, "/object/mass", "-1 g"},
+    {grasp, {{"/object/motion", "\"free\""}}, "/object", "\"mass\" is missing"},
+    {grasp, {{"/object/mass", "\"50 g\""}}, "/object/mass", "needs no mass"},
+    {grasp, {FREE("50 g")}, "/grasp/pull", "is not led"},
+    {grasp, {FREE("50 g"), {"/grasp", "{}"}, {"/load/gravity", NULL}}, "/object/motion", "draws"},
+    {grasp,
+     {FREE("50 g"), {"/grasp", "{}"}, {"/object/shape", "{\"form\": \"plane\"}"}},
+     "/object/motion",
+     "no volume"},
+    {grasp, {PULL("\"direction\": [1, 0, 0], \"force\": \"2 N\"")}, "/grasp/pull/force", "free"},
+    {grasp, {PULL("\"direction\": [1, 0, 0]")}, "/grasp/pull", "none of"},
+    {grasp, {PULL("\"distance\": \"9 mm\"")}, "/grasp/pull", "\"direction\" is missing"},
+    {grasp,
+     {PULL("\"path\": [{\"move\": [\"1 mm\", 0, 0]}], \"distance\": \"9 mm\"")},
+     "/grasp/pull",
+     "several of"},
+    {grasp,
+     {PULL("\"path\": [{\"move\": [\"1 mm\", 0, 0]}], \"direction\": [1, 0, 0]")},
+     "/grasp/pull/direction",
+     "each of its legs"},
+    {grasp, {PULL("\"path\": [{\"duration\": \"1 s\"}]")}, "/grasp/pull/path/0", "neither"},
+    {grasp, {PULL("\"path\": [" TURN("0, 0, 0") "]")}, "/grasp/pull/path/0/turn/axis", "no length"},
+    {grasp,
+     {PULL("\"steps\": 600, \"path\": [" TURN("1, 0, 0") ", " TURN("1, 0, 0") "]")},
+     "/grasp/pull/steps",
+     "up to 500 here"},
+    {grasp, {HELD_BY_THREE("[\"50 mm\", 0, 0]")}, NULL, NULL},
+    {grasp,
+     {HELD_BY_THREE("[\"50 mm\", 0, 0]"),
+      {"/grasp/pull", "{\"direction\": [-1, 0, 0], \"force\": \"2 N\"}"}},
+     NULL,
+     NULL},
+    {grasp,
+     {HELD_BY_THREE("[\"50 mm\", 0, 0]"),
+      {"/grasp/pull", "{\"direction\": [0, 1, 0], \"force\": \"2 N\"}"}},
+     "/grasp/pull/direction",
+     "along the axis"},
+    {grasp,
+     {HELD_BY_THREE("[\"50 mm\", 0, 0]"), {"/load/gravity", "[0, 0, \"9.8 m/s2\"]"}},
+     "/load/gravity",
+     "along the axis"},
+    {grasp,
+     {HELD_BY_THREE("[\"50 mm\", 0, 0]"), {"/grasp/approach", "{\"from\": [0, \"60 mm\", 0]}"}},
+     "/grasp/approach/from",
+     "along the axis"},
+    {grasp, {HELD_BY_THREE("[\"50 mm\", \"1 mm\", 0]")}, "/object", "do not all see"},
+    {grasp,
+     {HELD_BY_THREE("[\"50 mm\", 0, 0]"), {"/actuator/taper", "{\"left\": \"1 deg\"}"}},
+     "/object",
+     "do not all see"},
     {grasp, {BLOCKED("")}, "/grasp/blocked", "a plate in its place"},
     {grasp, {BLOCKED(""), NO_OBJECT}, NULL, NULL},
     {grasp,
@@ -169,10 +233,51 @@ START_TEST(numbers_are_in_si) {
   check_vector(g->approach.from, 0, 0, -0.06);
   ck_assert_double_eq_tol(g->approach.rate, 0.01, 1e-15);
   check_vector(g->pull.direction, 1, 0, 0);
-  ck_assert_double_eq_tol(g->pull.rate, 5e-3, 1e-15);
+  ck_assert_int_eq(g->pull.leg_count, 1);
+  ck_assert_double_eq_tol(g->pull.leg[0].seconds, g->pull.leg[0].move[0] / 5e-3, 1e-12);
   ck_assert_int_eq(g->pull.steps, 30);
   ck_assert_double_nan(g->damping_time);
   check_vector(g->gravity, 9.8, 0, 0);
+  job_spec_release(&spec);
+}
+END_TEST
+
+/* A path by legs: a shift, three turns in one, and a way back with a turn of a quarter. */
+START_TEST(a_path_leads_the_object_leg_by_leg) {
+  const char *const edits[][2] = {
+      PULL(
+          "\"steps\": 2, \"path\": [{\"move\": [\"6 mm\", 0, 0]}, {\"turn\": {\"axis\": [0, 2, 0], "
+          "\"angle\": \"1080 deg\"}}, {\"move\": [\"-6 mm\", 0, 0], \"turn\": {\"axis\": [0, 0, "
+          "-1], "
+          "\"angle\": \"90 deg\"}, \"duration\": \"7 s\"}]"),
+      {NULL, NULL}};
+  const double nowhere[3] = {0, 0, 0};
+  struct job_spec spec;
+  struct grasp_lead lead;
+  read_grasp(edits, &spec);
+  const struct grasp_pull *pull = &spec.grasp->pull;
+  ck_assert_int_eq(pull->leg_count, 3);
+  ck_assert_int_eq(pull->steps, 6);
+  ck_assert_double_eq_tol(pull->leg[0].seconds, 6.0 / 5, 1e-12);
+  ck_assert_double_eq_tol(pull->leg[1].seconds, 1080.0 / 45, 1e-9);
+  ck_assert_double_eq(pull->leg[2].seconds, 7);
+  ck_assert(!grasp_symmetric(spec.grasp));
+  grasp_lead_at(spec.grasp, nowhere, 1.0 / 6, &lead);
+  check_vector(lead.pose.place, 0.053, 0, -0.03);
+  check_vector(lead.direction, 1, 0, 0);
+  check_vector(lead.axis, 0, 0, 0);
+  grasp_lead_at(spec.grasp, nowhere, 1.0 / 3 + 0.25 / 9, &lead);
+  check_vector(lead.pose.place, 0.056, 0, -0.03);
+  check_vector(lead.pose.rotation, 0, 0, 1);
+  check_vector(lead.axis, 0, 1, 0);
+  grasp_lead_at(spec.grasp, nowhere, 2.0 / 3, &lead);
+  check_vector(lead.pose.rotation, 1, 0, 0);
+  ck_assert_double_eq_tol(lead.turned, 6 * M_PI, 1e-12);
+  grasp_lead_at(spec.grasp, nowhere, 1, &lead);
+  check_vector(lead.pose.place, 0.05, 0, -0.03);
+  check_vector(lead.pose.rotation, 0, 1, 0);
+  check_vector(lead.direction, -1, 0, 0);
+  ck_assert_double_eq_tol(lead.way, 0.012, 1e-15);
   job_spec_release(&spec);
 }
 END_TEST
@@ -270,6 +375,7 @@ int main(void) {
   tcase_add_unchecked_fixture(tcase, suite_share_reader, suite_drop_reader);
   tcase_add_loop_test(tcase, variants_are_taken_or_refused, 0, sizeof variants / sizeof *variants);
   tcase_add_test(tcase, numbers_are_in_si);
+  tcase_add_test(tcase, a_path_leads_the_object_leg_by_leg);
   tcase_add_test(tcase, a_plate_faces_the_tip);
   tcase_add_test(tcase, fingers_see_an_object_on_the_axis_alike);
   tcase_add_test(tcase, symmetry_depends_on_shape_and_pose);
