@@ -104,6 +104,14 @@ void model_place_obstacle(struct fe_model *model, int index, const struct rigid_
  */
 void model_commit_obstacles(struct fe_model *model, struct fe_state *state);
 
+/* What a commit at `state` would record of object `index`: the work dissipated by friction in the
+ * step, and that of the object's motion on the body, J. */
+struct obstacle_work {
+  double friction, motion;
+};
+struct obstacle_work model_obstacle_work(struct fe_model *model, const struct fe_state *state,
+                                         int index);
+
 /* Puts every object back to where it was at the last commit, before the first one to where it was
  * placed first. The state has to be put back by the caller. */
 void model_reject_obstacles(struct fe_model *model);

@@ -16,6 +16,8 @@ static const double cut_factor = 0.4, grow_factor = 1.6;
 static const double shortest = 0.03, carried_step = 0.25;
 /* A leap that moves the body so many times as far as the steps before it is a jump. */
 static const double jump_factor = 3;
+/* Error of the works of a step, as a part of them. */
+static const double works_error = 0.1;
 
 /* Time in which a free object is let go, s. */
 static const double letting_go = 0.1;
@@ -153,12 +155,29 @@ static double way_of(const struct finger *f) {
   return sqrt(sum / mesh->node_count);
 }
 
+/* Whether energy is lost on the way to the state that was tried, which a body that rests all the
+ * way has no means for: more than the works may err by, which are means over the step. */
+static bool loses_energy(struct course *c, const struct fe_load *load) {
+  struct finger *f = c->f;
+  const struct energy *before = &f->energy;
+  struct energy after = *before;
+  struct obstacle_work work = model_obstacle_work(f->solve.model, &f->trial, f->obstacle);
+  struct energy_step step = {.friction = work.friction, .obstacle_work = work.motion};
+  energy_record(&after, f->solve.model, &f->trial, load, &step);
+  double pumped = (after.pressure - before->pressure) * (after.volume - before->volume);
+  return after.remainder - before->remainder >
+         works_error * (fabs(work.friction) + fabs(work.motion) + fabs(pumped));
+}
+
 /* Whether the state that was tried is that of a body that has jumped, as Newton's method may do
  * without a word: in a leap, and in the pull, where a body that goes with the object moves about as
  * far as it. */
-static bool has_jumped(const struct course *c, double target) {
+static bool has_jumped(struct course *c, double target, const struct fe_load *load) {
   if (!c->leaps && c->stage.kind != STAGE_PULL) {
     return false;
+  }
+  if (c->leaps && loses_energy(c, load)) {
+    return true;
   }
   double usual = fmax(c->pace, c->f->grasp.longest_step / c->stage.full);
   return way_of(c->f) > jump_factor * usual * (target - c->along);
@@ -184,7 +203,7 @@ static enum status rest_at(struct course *c, double target, int *iterations) {
   if (status == STATUS_OK && !is_stable(f)) {
     status = STATUS_UNSTABLE_PATH;
   }
-  if (status == STATUS_OK && has_jumped(c, target)) {
+  if (status == STATUS_OK && has_jumped(c, target, &load)) {
     status = STATUS_UNSTABLE_PATH;
   }
   if (f->solve.solver->verbose) {
