@@ -44,6 +44,20 @@ fetch POST /api/v1/jobs --data-binary "${grasp/\"friction\":0.5/\"friction\":-0.
 check "negative friction is refused" "422 /object/friction" "$CODE $(field .pointer)"
 fetch POST /api/v1/jobs --data-binary "${grasp/\[1,0,0\]/[0,0,0]}"
 check "so is a pull without a direction" "422 /grasp/pull/direction" "$CODE $(field .pointer)"
+# A pyramid without its floor.
+facet='facet normal 0 0 1\nouter loop\nvertex %s\nvertex %s\nvertex 4 4 9\nendloop\nendfacet\n'
+# shellcheck disable=SC2059
+pyramid=$({ echo solid a; printf "$facet" '0 0 0' '9 0 0' '9 0 0' '9 9 0' '9 9 0' '0 9 0' '0 9 0' '0 0 0'; echo endsolid a; } |
+  base64 -w 0)
+shape="{\"form\":\"surface\",\"unit\":\"mm\",\"stl\":{\"base64\":\"$pyramid\"}}"
+fetch POST /api/v1/jobs --data-binary "${grasp/'{"form":"plane"}'/$shape}"
+check "so is a surface with a hole" "422 /object/shape/stl" "$CODE $(field .pointer)"
+check_match "which is told where it is open" "the surface is open: the edge from \(" "$(field .detail)"
+fetch POST /api/v1/jobs -H 'Prefer: wait=60' --data-binary "${grasp/-1 mm/-50 mm}"
+id=$(field .id)
+check "a pull out of reach is a result" succeeded "$(wait_state "$id" 'succeeded|failed|timed_out' 120)"
+fetch GET "/api/v1/jobs/$id/result"
+check "that says so" "never touched, the actuator never touched the object" "$(field '"\(.outcome), \(.warnings[0])"')"
 fetch POST /api/v1/jobs -H 'Prefer: wait=60' --data-binary "${grasp/-1 mm/2.5 mm}"
 id=$(field .id)
 check "an object inside the body fails" failed "$(wait_state "$id" 'succeeded|failed|timed_out' 120)"
