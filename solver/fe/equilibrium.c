@@ -338,7 +338,7 @@ static enum status predict(struct equilibrium *s, struct fe_load *load, struct f
   correction(s, s->step);
   double size = size_of(s, s->step);
   bool converged = false;
-  if (isfinite(size)) {
+  if (isfinite(size) && reach_of(s, s->step) < s->options.longest_step) {
     step_and_polish(s, load, 0, state, size, &converged);
   }
   return converged ? STATUS_OK : STATUS_DIVERGED;

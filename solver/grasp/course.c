@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 #include "solver/base/vec3.h"
+#include "solver/grasp/guess.h"
 #include "solver/job/grasp_shape.h"
 
 enum {
@@ -47,6 +48,7 @@ struct course {
   double moving;       /* of these in motion */
   bool touched;        /* in the pull, and not free since */
   enum status failure; /* of the last attempt */
+  struct guess guess;  /* in the pull */
 };
 
 /* ---- what a stage does -------------------------------------------------------------------- */
@@ -199,6 +201,8 @@ static enum status rest_at(struct course *c, double target, int *iterations) {
   }
   place_object(c, target);
   state_copy(m, &f->trial, &f->solve.state);
+  guess_apply(m, &c->guess, target - c->along, &f->trial);
+  c->guess.step = 0;
   enum status status = equilibrium_solve(f->solve.solver, &load, before, &f->trial, iterations);
   if (status == STATUS_OK && !is_stable(f)) {
     status = STATUS_UNSTABLE_PATH;
@@ -216,6 +220,9 @@ static enum status rest_at(struct course *c, double target, int *iterations) {
     return status;
   }
   c->pace = way_of(f) / (target - c->along);
+  if (c->stage.kind == STAGE_PULL && !f->loose.object) {
+    guess_note(m, &c->guess, &f->solve.state, target - c->along);
+  }
   accept(c, &load);
   c->time += (target - c->along) * c->stage.seconds;
   c->stages += target - c->along;
@@ -470,6 +477,9 @@ enum status course_follow(struct finger *f, const struct course_visit *visit,
   enum status status = model_evaluate(f->solve.model, &f->solve.state, &none, false);
   model_commit_obstacles(f->solve.model, &f->solve.state);
   energy_start(&f->energy, f->solve.model, &f->solve.state, &none, 0);
+  if (status == STATUS_OK) {
+    status = guess_create(f->solve.model, &c.guess);
+  }
   for (int k = 0; k < count && status == STATUS_OK && !f->loose.fell; k++) {
     status = stages[k].kind == STAGE_LETTING_GO ? loose_begin(f, error) : STATUS_OK;
     if (status == STATUS_OK) {
@@ -480,6 +490,7 @@ enum status course_follow(struct finger *f, const struct course_visit *visit,
   if (status != STATUS_OK) {
     explain(&c, status);
   }
+  guess_release(&c.guess);
   return status;
 }
 
