@@ -43,7 +43,9 @@ static void add_text(char *out, size_t size, const char *text) {
 
 /* "chamber gap 1 mm", after what the name has already. */
 static void add_to_name(struct draft *draft, const char *what, const json_t *value) {
-  char *made = json_is_string(value) ? NULL : json_dumps(value, JSON_ENCODE_ANY | JSON_COMPACT);
+  char *made = json_is_string(value)
+                   ? NULL
+                   : json_dumps(value, JSON_ENCODE_ANY | JSON_COMPACT | JSON_REAL_PRECISION(15));
   const char *text = made ? made : json_string_value(value);
   draft->unnamed = draft->unnamed || !text;
   add_text(draft->name, NAME_BYTES_MAX, draft->name[0] ? ", " : "");

@@ -157,6 +157,8 @@ START_TEST(numbers_are_spread) {
     ck_assert(tolerance >= 1e-6 && tolerance <= 1e-4);
     ck_assert(whole >= -2.0 && whole <= 2.0 && whole == floor(whole));
     seen[(int)whole + 2]++;
+    /* seven digits, which is what the numbers have */
+    ck_assert_uint_lt(strlen(study.member[i].name), sizeof "tolerance 1.234567e-05, priority -1");
   }
   for (int k = 0; k < 5; k++) {
     ck_assert_int_gt(seen[k], 0);
