@@ -28,7 +28,8 @@ export function edgeLines(geometry, opacity = 0.65) {
   return lines;
 }
 
-// A scene in light from the upper left behind whoever looks.
+// A scene in light from the left behind whoever looks, from above, or from below for whoever looks from there:
+// what is turned to the eye is lit.
 export class Stage {
   constructor(...parts) {
     this.scene = new Scene();
@@ -40,7 +41,8 @@ export class Stage {
   draw(renderer, camera, width, height) {
     camera.aspect = width / height;
     camera.updateProjectionMatrix();
-    this.light.position.set(-0.5, 0.9, 0.9).applyQuaternion(camera.quaternion);
+    const above = 4 * new Vector3(0, 0, 1).applyQuaternion(camera.quaternion).z;
+    this.light.position.set(-0.5, 0.9 * Math.min(Math.max(above, -1), 1), 0.9).applyQuaternion(camera.quaternion);
     renderer.render(this.scene, camera);
   }
 }
