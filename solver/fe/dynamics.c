@@ -3,15 +3,17 @@
 #include <math.h>
 #include <string.h>
 
-enum { ATTEMPTS = 30, EASY_ITERATIONS = 6 };
+enum { ATTEMPTS = 30, EASY_ITERATIONS = 6, PASSING_PATIENCE = 2 };
 
 /* Step control: after a failure; least and most change; changes put up with, so that the factor
  * serves several steps; error at which a step is repeated, in tolerances. */
 static const double cut_factor = 0.4, least_change = 0.4, most_change = 2;
 static const double steady_low = 0.8, steady_high = 1.4, too_much = 2;
-/* The corrections of a step stop this far below its error, in tolerances. */
-static const double solved = 1e-4;
-/* Forces of rigid objects settle by so much less in a step than at rest: the next step goes on. */
+/* The corrections of a step stop this far below its error, in tolerances; against rigid objects
+ * that are led, whose forces do not settle that far. */
+static const double solved = 1e-4, solved_against = 5e-3;
+/* Forces of rigid objects settle by so much less in a step than at rest, and swinging ones are put
+ * up with after so many updates: the next step goes on. */
 static const double passing_forces = 5;
 /* Largest ratio of steps for differences of second order (they are stable up to 2.4). */
 static const double difference_ratio = 2.2;
@@ -121,11 +123,20 @@ static void measure(struct dynamics *d, const struct fe_state *state, const stru
   d->error = fabs(0.5 * k.alpha + k.beta - 1.0 / 6) * h * h * change;
 }
 
+/* What a step in time asks of its equilibrium. */
+static void loosen(struct dynamics *d) {
+  struct equilibrium_options *o = &d->solver->options;
+  double part = d->model->obstacle_count > 0 && !d->object ? solved_against : solved;
+  o->step_tolerance = fmin(o->step_tolerance, part * d->options.tolerance);
+  o->force_tolerance *= passing_forces;
+  o->force_patience = PASSING_PATIENCE;
+}
+
 /* Solves for the state at the end of a step; on failure the state is that at its start. */
 static enum status solve(struct dynamics *d, const struct fe_load *load, double pressure_before,
                          double h, struct fe_state *state, const struct motion *motion) {
   struct equilibrium *solver = d->solver;
-  double tolerance = solver->options.step_tolerance, force = solver->options.force_tolerance;
+  const struct equilibrium_options at_rest = solver->options;
   int iterations = 0;
   state_copy(d->model, &d->saved, state);
   prepare(d, state, motion, h);
@@ -135,13 +146,11 @@ static enum status solve(struct dynamics *d, const struct fe_load *load, double 
   solver->factor_fits =
       d->factor_step == h && d->factorizations == d->model->statistics.factorizations;
   solver->pressure_step = 0;
-  solver->options.step_tolerance = fmin(tolerance, solved * d->options.tolerance);
-  solver->options.force_tolerance = passing_forces * force;
+  loosen(d);
   d->model->inertia = d->inertia;
   enum status status = equilibrium_solve(solver, load, pressure_before, state, &iterations);
   d->model->inertia = NULL;
-  solver->options.step_tolerance = tolerance;
-  solver->options.force_tolerance = force;
+  solver->options = at_rest;
   d->factor_step = solver->factor_fits ? h : 0;
   d->factorizations = d->model->statistics.factorizations;
   solver->factor_fits = false;

@@ -13,6 +13,7 @@ struct equilibrium_options {
   double traction_tolerance; /* largest change of a contact multiplier at the end, Pa */
   double force_tolerance; /* change of the forces of rigid objects at the end, as a part of them */
   double overlap_tolerance; /* put up with where single tractions do not settle, m; 0: none */
+  int force_patience;       /* updates before forces of rigid objects that swing are put up with */
   int max_iterations;
   int rough_steps;   /* given up after so many steps that had to be cut short by far; 0: never */
   bool passing;      /* the state is only passed: its contact need not have settled */

@@ -64,7 +64,7 @@ static bool forces_settled(const struct equilibrium *s, const struct settling_ch
                            int updates) {
   const struct equilibrium_options *o = &s->options;
   return forces->left < o->force_tolerance ||
-         (updates >= PATIENCE && s->moved < unmoved * o->step_tolerance &&
+         (updates >= o->force_patience && s->moved < unmoved * o->step_tolerance &&
           forces->next < still_forces * o->force_tolerance);
 }
 

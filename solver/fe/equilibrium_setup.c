@@ -31,6 +31,7 @@ enum status equilibrium_create(struct fe_model *model, struct equilibrium **out,
   s->options.traction_tolerance = 1e-2 * material_shear_modulus(&model->material);
   s->options.force_tolerance = 1e-3;
   s->options.overlap_tolerance = 0.004 * model->mesh->wall_thickness;
+  s->options.force_patience = 6;
   s->options.max_iterations = 30;
   s->retraction = retraction_create(model->mesh);
   s->step = calloc((size_t)model->dof_count + 1, sizeof *s->step);
