@@ -99,6 +99,21 @@ static double from_samples(const json_t *result, const json_t *rule, const char 
                       : interpolate(samples, key, "pressure_kPa", reaches, last);
 }
 
+/* Why a result does not give the value. Of a grasp that did not come to its end it is told how far
+ * that went: forces rise on the way. */
+static void say_missing(const json_t *result, struct finding *finding) {
+  const char *status = json_string_value(json_object_get(result, "status"));
+  const char *reason = json_string_value(json_object_get(result, "reason"));
+  const char *kind = json_string_value(json_object_get(result, "kind"));
+  bool grasp = kind && strcmp(kind, "grasp") == 0 && isfinite(finding->value);
+  char until[40] = "";
+  if (grasp) {
+    snprintf(until, sizeof until, "; until there %.4g", finding->value);
+  }
+  snprintf(finding->missing, sizeof finding->missing, "missing: %.40s%s%.60s%s",
+           status ? status : "?", reason && reason[0] ? ", " : "", reason ? reason : "", until);
+}
+
 /* Our value of a rule that names a result. */
 static struct finding from_result(const struct works *works, const json_t *rule) {
   struct finding finding = {.error = -1};
@@ -121,7 +136,6 @@ static struct finding from_result(const struct works *works, const json_t *rule)
   const json_t *error = pointer ? at_pointer(result, pointer, "_error") : NULL;
   finding.error = json_is_number(error) ? fabs(factor) * json_number_value(error) : -1;
   const char *status = json_string_value(json_object_get(result, "status"));
-  const char *reason = json_string_value(json_object_get(result, "reason"));
   const char *kind = json_string_value(json_object_get(result, "kind"));
   bool of_states =
       kind && strcmp(kind, "snap") == 0; /* its metrics are of states that were found */
@@ -129,8 +143,7 @@ static struct finding from_result(const struct works *works, const json_t *rule)
     finding.found = false; /* metrics of a path that was cut short are those of another load */
   }
   if (!finding.found) {
-    snprintf(finding.missing, sizeof finding.missing, "missing: %s%s%s", status ? status : "?",
-             reason && reason[0] ? ", " : "", reason ? reason : "");
+    say_missing(result, &finding);
   }
   return finding;
 }
