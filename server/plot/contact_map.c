@@ -208,7 +208,10 @@ static enum status draw_strips(const struct map *map, struct canvas *canvas, str
   }
   double used = high * scale + gap * (double)(count - 1);
   struct box strip = {area.x + left, area.y + fmax((room - used) / 3, 0), scale * length, 0};
-  struct box whole = {area.x, strip.y, area.width, fmax(used, fmin(150 * u, room))};
+  struct text_style style = chart_style_label();
+  double words, line;
+  canvas_measure(canvas, map->scale.bar.label, &style, &words, &line);
+  struct box whole = {area.x, strip.y, area.width, fmax(used, fmin(words + 8 * u, room))};
   for (int s = 0; s < SIDES; s++) {
     if (map->strip[s].shown) {
       strip.height = scale * (map->strip[s].high - map->strip[s].low);
