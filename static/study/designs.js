@@ -114,7 +114,11 @@ export class Designs {
     this.names = document.names;
     this.reasons = document.reasons ?? [];
     this.states = Uint8Array.from(document.states, (state) => Math.max(STATES.indexOf(state), 0));
-    this.columns = document.columns.map((column, i) => new Column(column, document.values[i], i));
+    // what a design has that stopped on its way is of another load than what the others have
+    const counted = (values) => values.map((value, row) => (document.states[row] === 'succeeded' ? value : null));
+    this.columns = document.columns.map(
+      (column, i) => new Column(column, column.role === 'parameter' ? document.values[i] : counted(document.values[i]), i),
+    );
     this.byKey = new Map(this.columns.map((column) => [column.key, column]));
   }
 

@@ -19,6 +19,8 @@ import { about, columns, studyUrl, summary } from './source.js';
 import { Status } from './status.js';
 import { onColours } from './paint.js';
 
+const TRUSTED = 0.5; // R² of a surrogate whose shares of the variance are worth a headline
+
 const address = new Address();
 const history = new History();
 const charts = new Map();
@@ -127,7 +129,7 @@ function setUp() {
   const key = () => metric;
   const usual = usualObjectives();
   const [importance, effects] = setUpImportance(key, (text, r2) => {
-    setText(find('decides'), text);
+    setText(find('decides'), r2 < TRUSTED ? 'not clear yet' : text);
     setText(find('trust'), `R² ${r2.toFixed(3)}`);
   });
   const quality = setUpQuality(key);
@@ -253,6 +255,9 @@ async function start() {
   } catch (problem) {
     showProblem(find('problem'), problem);
     return;
+  }
+  if (study.sampling === 'optimise') {
+    find('parallel-title').closest('section').before(find('history')); // what such a study is about comes first
   }
   find('study').hidden = false;
   const status = new Status(takeDesigns, showReason);

@@ -148,7 +148,7 @@ export class Ranking {
           { class: 'bar-of-parts', 'aria-hidden': 'true' },
           ...design.parts.map((part, i) => {
             const share = make('span');
-            share.style.width = `${(100 * Math.max(this.isPreset ? design.score / design.parts.length : part * criteria[i].weight, 0)) / most}%`;
+            share.style.width = `${(100 * Math.max(part * criteria[i].weight, 0)) / most}%`;
             share.style.background = SERIES[i % SERIES.length];
             return share;
           }),

@@ -33,7 +33,7 @@ function solved(gap, side, top, bottom, stiffness) {
   return [angle, mass, 1.1 + angle / 220 + 0.04 * gap, 48 * (1 - Math.cos((angle * Math.PI) / 260))];
 }
 
-// The answer of /designs?format=columns for `count` designs; every 50th has failed.
+// The answer of /designs?format=columns for `count` designs; every 50th has failed, with metrics of no use.
 function columnsOf(count) {
   const random = generator(7);
   const values = Array.from({ length: 9 }, () => []);
@@ -43,7 +43,7 @@ function columnsOf(count) {
     const material = Math.floor(random() * 3);
     const hasFailed = i % 50 === 49;
     const metrics = solved(...parts, [0.8, 1, 1.5][material]);
-    [...parts, material, ...metrics.map((value) => (hasFailed ? null : value * (1 + 0.02 * (random() - 0.5))))].forEach(
+    [...parts, material, ...metrics.map((value) => (hasFailed ? 999 : value * (1 + 0.02 * (random() - 0.5))))].forEach(
       (value, k) => values[k].push(value),
     );
     states.push(hasFailed ? 'failed' : 'succeeded');
