@@ -33,13 +33,13 @@ void print_queue(FILE *out, const struct figures *figures) {
       "| | |\n|---|---|\n| simulations that came to their end | %.0f of %.0f |\n"
       "| the POST, in which every member is checked | %.2f s |\n"
       "| from then until the result is in the database | %.1f s |\n"
-      "| CPU time of the solver | %.1f s |\n"
-      "| simulations a minute, of wall-clock time and of the core | %.0f, **%.0f** |\n"
+      "| CPU time of the solvers, of the daemon | %.1f, %.1f s |\n"
+      "| simulations a minute, of wall-clock time and of a core | %.0f, **%.0f** |\n"
       "| peak memory of solver and daemon | %.0f, %.0f MB |\n"
       "| the result; page of the job, result, plot of a metric | %.1f MB; %.2f, %.2f, %.2f s |\n",
       figure_number(queue, "solved"), figure_number(queue, "members"),
       figure_number(queue, "post_s"), figure_number(queue, "wall_s"), figure_number(queue, "cpu_s"),
-      figure_number(queue, "simulations_per_minute_wall"),
+      figure_number(queue, "daemon_cpu_s"), figure_number(queue, "simulations_per_minute_wall"),
       figure_number(queue, "simulations_per_minute_core"),
       figure_number(queue, "solver_peak_memory_MB"), figure_number(queue, "daemon_peak_memory_MB"),
       1e-6 * figure_number(queue, "result_bytes"), figure_number(queue, "page_s"),
