@@ -9,7 +9,7 @@ import { short, withUnit } from './shape.js';
 import { Skin, stillGeometry } from './skin.js';
 
 const MOMENTS = { before: 'Before', inflated: 'Inflated', peak: 'Peak force', held: 'Last touch' };
-const STAGES = { gravity: 'Weight', approach: 'Approach', inflation: 'Inflation', 'letting go': 'Letting go', pull: 'Pull', release: 'Release' };
+const STAGES = { gravity: 'Weight', approach: 'Approach', inflation: 'Inflation', suction: 'Suction', 'letting go': 'Letting go', pull: 'Pull', release: 'Release' };
 const SIDES = [-1, 1].flatMap((y) => [0.42, -0.7].flatMap((x) => [0.42, -0.7].map((z) => [x, y, z]))); // as of the plots
 const OBJECT_REACH = 0.35; // how much of the object the view starts with beside the fingers, in their size
 

@@ -65,8 +65,8 @@ static bool is_first(const struct timeline *line, size_t place) {
 }
 
 static struct colour band_of(const char *stage) {
-  static const char *const stages[] = {"approach", "inflation", "pull",
-                                       "release",  "gravity",   "letting go"};
+  static const char *const stages[] = {"approach", "inflation",  "pull",   "release",
+                                       "gravity",  "letting go", "suction"};
   size_t place = 0;
   while (place < sizeof stages / sizeof *stages && strcmp(stages[place], stage) != 0) {
     place++;

@@ -82,6 +82,10 @@ static double dead_work(const struct fe_model *m, const struct fe_state *state) 
   return sum;
 }
 
+void energy_reload(struct energy *energy, const struct fe_model *m, const struct fe_state *state) {
+  energy->lift = dead_work(m, state);
+}
+
 static void keep(struct energy *energy, const struct fe_model *m, const struct fe_state *state,
                  const struct fe_load *load) {
   energy->pressure = load->pressure;

@@ -45,6 +45,10 @@ struct energy_step {
   double obstacle_work; /* done by obstacles on the body */
 };
 
+/* The dead load of the model has become another one at this state: its work goes on from here. */
+void energy_reload(struct energy *energy, const struct fe_model *model,
+                   const struct fe_state *state);
+
 /* Records an accepted step that ended in the state under the load. */
 void energy_record(struct energy *energy, const struct fe_model *model,
                    const struct fe_state *state, const struct fe_load *load,

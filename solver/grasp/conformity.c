@@ -150,9 +150,9 @@ static bool face_touches(const struct obstacle *o, int face) {
   return touches;
 }
 
-/* Whether the rim touches all around: in every sector that has a part of it. */
-static bool sealed(const struct fe_model *m, const struct obstacle *o,
-                   const struct sucker_spec *sucker) {
+/* In every sector that has a part of the rim. */
+bool conformity_sealed(const struct fe_model *m, const struct obstacle *o,
+                       const struct sucker_spec *sucker) {
   bool there[SECTORS] = {false}, touches[SECTORS] = {false}, good = false;
   for (int f = 0; f < m->contact.face_count; f++) {
     int sector;
@@ -186,7 +186,7 @@ enum status conformity_measure(const struct fe_model *m, const struct job_spec *
   }
   int suckers = spec->family == FAMILY_PNEUNET ? spec->pneunet.sucker_count : 0;
   for (int k = 0; k < suckers && status == STATUS_OK; k++) {
-    if (sealed(m, o, &spec->pneunet.sucker[k])) {
+    if (conformity_sealed(m, o, &spec->pneunet.sucker[k])) {
       conformity->suction += suction_force(spec, k);
       conformity->sealed++;
     }

@@ -20,6 +20,10 @@ struct conformity {
   int sealed;     /* their number */
 };
 
+/* Whether the rim of a sucker touches the object all around, as last evaluated. */
+bool conformity_sealed(const struct fe_model *model, const struct obstacle *object,
+                       const struct sucker_spec *sucker);
+
 /* Measures the state u (node_count x 3) against the object `index`, as last evaluated. spec is that
  * of the body, with its suckers. STATUS_OK or NO_MEMORY. */
 enum status conformity_measure(const struct fe_model *model, const struct job_spec *spec, int index,

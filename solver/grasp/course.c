@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include "solver/base/vec3.h"
 #include "solver/grasp/guess.h"
-#include "solver/job/grasp_shape.h"
+#include "solver/grasp/stage.h"
 
 enum {
   EASY_ITERATIONS = 8,
@@ -19,17 +19,6 @@ static const double shortest = 0.03, carried_step = 0.25;
 static const double jump_factor = 3;
 /* Error of the works of a step, as a part of them. */
 static const double works_error = 0.1;
-
-/* Time in which a free object is let go, s. */
-static const double letting_go = 0.1;
-
-/* What the body and the object go through in one stage. */
-struct stage {
-  enum grasp_stage kind;
-  int records;
-  double full;    /* longest step, part of the stage */
-  double seconds; /* that it takes at its rate */
-};
 
 struct course {
   struct finger *f;
@@ -60,7 +49,7 @@ static struct fe_load load_at(const struct course *c, double along) {
                     : kind == STAGE_INFLATION ? along * to
                     : kind == STAGE_RELEASE   ? (1 - along) * to
                                               : to;
-  double dead = !solve_has_gravity(&c->f->spec) ? 0 : kind == STAGE_GRAVITY ? along : 1;
+  double dead = kind == STAGE_GRAVITY ? along : 1;
   return (struct fe_load){pressure, pressure, dead};
 }
 
@@ -69,10 +58,19 @@ static double pulled_at(const struct course *c, double along) {
   return c->stage.kind == STAGE_PULL ? along : c->stage.kind == STAGE_RELEASE ? c->pulled : 0;
 }
 
+/* Part of their suction that the suckers have. */
+static double suction_at(const struct course *c, double along) {
+  return c->stage.kind < STAGE_SUCTION    ? 0
+         : c->stage.kind == STAGE_SUCTION ? along
+         : c->stage.kind == STAGE_RELEASE ? 1 - along
+                                          : 1;
+}
+
 /* Leads the object to where it is then, or puts on a free one what draws on it. */
 static void place_object(struct course *c, double along) {
   struct finger *f = c->f;
   double pulled = pulled_at(c, along), from[3];
+  cups_pull(f, suction_at(c, along));
   if (f->loose.object) {
     loose_apply(f, c->stage.kind == STAGE_LETTING_GO ? 1 - along : 0, pulled);
     return;
@@ -140,6 +138,7 @@ static void accept(struct course *c, const struct fe_load *load) {
   dynamics_commit(f->dynamics, &f->trial, &step);
   state_copy(f->solve.model, &f->solve.state, &f->trial);
   energy_record(&f->energy, f->solve.model, &f->solve.state, load, &step);
+  cups_watch(f);
   if (f->loose.object) {
     loose_watch(f);
   }
@@ -252,13 +251,14 @@ static enum status drive(void *context, double time, struct fe_load *load) {
   return STATUS_OK;
 }
 
-/* Ends the motion of an object that has left the finger. */
+/* Looks at the suckers; ends the motion of an object that has left the finger. */
 static enum status watch(void *context, const struct motion *motion, const struct fe_state *state,
                          const struct fe_load *load) {
   const struct drive *d = context;
   (void)motion;
   (void)state;
   (void)load;
+  cups_watch(d->c->f);
   return d->c->f->loose.object && loose_watch(d->c->f) ? STATUS_DIVERGED : STATUS_OK;
 }
 
@@ -390,25 +390,11 @@ static enum status reach(struct course *c, double goal, bool *over) {
   return STATUS_OK;
 }
 
-/* Pace and longest step of the leg of the pull that the part `along` is on. */
-static void enter_leg(struct course *c, double along) {
-  const struct finger *f = c->f;
-  const struct grasp_pull *pull = &f->grasp.pull;
-  if (c->stage.kind != STAGE_PULL || pull->leg_count == 0) {
-    return;
-  }
-  const struct grasp_leg *leg = &pull->leg[grasp_lead_leg(pull, along)];
-  double way = vec3_norm(leg->move) + vec3_norm(leg->turn) * f->reach;
-  c->stage.seconds = pull->leg_count * leg->seconds;
-  c->stage.full = fmin(0.1, f->grasp.longest_step / way) / pull->leg_count;
-  c->step = fmin(c->step, c->stage.full);
-}
-
 static enum status follow_stage(struct course *c, const struct stage *stage) {
   bool over = false;
   c->stage = *stage;
   c->along = 0;
-  enter_leg(c, 0);
+  stage_enter_leg(&c->stage, c->f, 0);
   c->step = 0.5 * c->stage.full;
   c->steps = c->jumps = 0;
   c->pace = 0;
@@ -416,36 +402,12 @@ static enum status follow_stage(struct course *c, const struct stage *stage) {
   enum status status = take(c, false);
   over = status == STATUS_OK && is_free(c);
   for (int k = 1; k <= stage->records && status == STATUS_OK && !over; k++) {
-    enter_leg(c, (double)k / stage->records);
+    stage_enter_leg(&c->stage, c->f, (double)k / stage->records);
+    c->step = fmin(c->step, c->stage.full);
     status = reach(c, (double)k / stage->records, &over);
   }
   c->pulled = pulled_at(c, c->along);
   return status;
-}
-
-/* The stages of the grasp; returns their number. */
-static int plan(const struct finger *f, struct stage out[STAGE_COUNT]) {
-  const struct grasp_spec *g = &f->grasp;
-  double way = vec3_norm(g->approach.from), longest = g->longest_step;
-  int count = 0, steps = f->spec.load.steps;
-  if (solve_has_gravity(&f->spec)) {
-    out[count++] = (struct stage){STAGE_GRAVITY, 1, 0.5, 1};
-  }
-  if (way > 0) {
-    out[count++] = (struct stage){STAGE_APPROACH, g->approach.steps, fmin(0.25, longest / way),
-                                  way / g->approach.rate};
-  }
-  out[count++] = (struct stage){STAGE_INFLATION, steps, fmin(0.1, 1.0 / steps), g->inflation_time};
-  if (g->object.free) {
-    out[count++] = (struct stage){STAGE_LETTING_GO, 4, 0.1, letting_go};
-  }
-  if (grasp_pulls(g)) { /* pace and longest step: see enter_leg */
-    out[count++] = (struct stage){STAGE_PULL, g->pull.steps, 0.1, g->inflation_time};
-  }
-  if (g->release) {
-    out[count++] = (struct stage){STAGE_RELEASE, steps, fmin(0.1, 1.0 / steps), g->inflation_time};
-  }
-  return count;
 }
 
 static void close_ledger(struct course *c) {
@@ -469,7 +431,7 @@ enum status course_follow(struct finger *f, const struct course_visit *visit,
                           struct course_report *report, struct error *error) {
   struct stage stages[STAGE_COUNT];
   struct course c = {.f = f, .visit = visit, .report = report, .error = error};
-  int count = plan(f, stages);
+  int count = stages_plan(f, stages);
   *report = (struct course_report){.along = 0};
   c.stage = stages[0];
   place_object(&c, 0);
@@ -481,6 +443,9 @@ enum status course_follow(struct finger *f, const struct course_visit *visit,
     status = guess_create(f->solve.model, &c.guess);
   }
   for (int k = 0; k < count && status == STATUS_OK && !f->loose.fell; k++) {
+    if (stages[k].kind == STAGE_SUCTION && cups_close(f) == 0) {
+      continue;
+    }
     status = stages[k].kind == STAGE_LETTING_GO ? loose_begin(f, error) : STATUS_OK;
     if (status == STATUS_OK) {
       status = follow_stage(&c, &stages[k]);

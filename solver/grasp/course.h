@@ -3,6 +3,7 @@
  *   gravity    the weight comes on, the object stands where the approach begins
  *   approach   the object moves in a straight line to its position
  *   inflation  the pressure rises
+ *   suction    cups whose rims are closed are evacuated
  *   letting go what holds a free object is taken away: the finger bears it alone, or it falls
  *   pull       the object moves along the pull, or a force draws on it, at full pressure
  *   release    the pressure falls to 0

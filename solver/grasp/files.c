@@ -144,7 +144,7 @@ enum status grasp_files_begin(struct grasp_files *files, int number, const struc
 static int frame_interval(const struct grasp_files *files) {
   const struct grasp_spec *g = files->gripper->spec->grasp;
   int steps = files->gripper->spec->load.steps;
-  int records = steps * (g->release ? 2 : 1) + g->approach.steps + g->pull.steps + 4;
+  int records = steps * (g->release ? 2 : 1) + g->approach.steps + g->pull.steps + 8;
   int room = FRAMES_MAX - STAGE_COUNT - 1;
   return (records + room - 1) / room;
 }

@@ -125,7 +125,8 @@ enum status finger_prepare(const struct job_spec *job, int number, bool half, st
     f->reach = reach_of(f);
     status = check_clearance(f, error);
   }
-  if (status == STATUS_OK && state_create(f->solve.model, &f->trial) != STATUS_OK) {
+  if (status == STATUS_OK &&
+      (state_create(f->solve.model, &f->trial) != STATUS_OK || cups_prepare(f) != STATUS_OK)) {
     status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the state");
   }
   return status == STATUS_OK ? prepare_motion(f, error) : status;
@@ -133,6 +134,7 @@ enum status finger_prepare(const struct job_spec *job, int number, bool half, st
 
 void finger_release(struct finger *f) {
   loose_end(f);
+  cups_release(f);
   motion_release(&f->motion);
   dynamics_destroy(f->dynamics);
   state_release(&f->trial);
@@ -146,10 +148,14 @@ void finger_release(struct finger *f) {
 /* Resultants of the whole finger: the mirror image of a half model's has the opposite force across
  * and the opposite moments along and up. */
 static void measure_force(const struct finger *f, const struct obstacle_state *o, double *value) {
+  const double *cups = f->cups.force;
+  double carried[3]; /* moment of the suckers' force about the place of the object */
+  vec3_cross(f->solve.model->obstacle[f->obstacle]->pose.place, cups, carried);
   for (int i = 0; i < 3; i++) {
     bool half = f->spec.half_model;
-    value[GRASP_FORCE_X + i] = half && i == 1 ? 0 : f->whole * o->force[i];
-    value[GRASP_MOMENT_X + i] = half && i != 1 ? 0 : f->whole * o->moment[i];
+    double moment = o->moment[i] + cups[3 + i] - carried[i];
+    value[GRASP_FORCE_X + i] = half && i == 1 ? 0 : f->whole * (o->force[i] + cups[i]);
+    value[GRASP_MOMENT_X + i] = half && i != 1 ? 0 : f->whole * moment;
   }
   const double *way = f->grasp.blocked ? f->grasp.blocked_direction : f->lead.direction;
   double sign = f->grasp.blocked ? 1 : -1;
@@ -187,7 +193,8 @@ enum status finger_measure(struct finger *f, struct grasp_sample *sample) {
   value[GRASP_SLIP] = o.slip_share;
   value[GRASP_WRAP] = c.wrap;
   value[GRASP_MATCH] = c.match;
-  value[GRASP_SUCTION] = c.suction;
+  bool drawn = sample->stage >= STAGE_SUCTION && !f->grasp.blocked;
+  value[GRASP_SUCTION] = drawn ? f->whole * f->cups.pull : c.suction;
   value[GRASP_RUBBED] = f->whole * o.friction_total;
   value[GRASP_BENDING] = bending_angle(f, &status);
   return status;

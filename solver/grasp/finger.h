@@ -4,6 +4,7 @@
 
 #include "solver/fe/dynamics_carry.h"
 #include "solver/fe/obstacle.h"
+#include "solver/grasp/cups.h"
 #include "solver/grasp/loose.h"
 #include "solver/grasp/sample.h"
 #include "solver/job/grasp.h"
@@ -19,6 +20,7 @@ struct finger {
   int obstacle;           /* number of the object in the model */
   struct grasp_lead lead; /* where the course has led the object, and in which direction */
   struct loose loose;     /* the object once it has been let go */
+  struct cups cups;       /* its suckers */
   struct fe_state trial;  /* step that is being tried */
   struct dynamics *dynamics;
   struct motion motion;

@@ -32,6 +32,7 @@ static double passed(const struct run *run, const struct grasp_sample *sample) {
     return 0.02 + 0.08 * sample->along;
   case STAGE_INFLATION:
     return 0.1 + (inflated - 0.1) * sample->along;
+  case STAGE_SUCTION:
   case STAGE_LETTING_GO:
     return inflated;
   case STAGE_PULL:

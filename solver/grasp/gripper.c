@@ -133,12 +133,13 @@ static void set_hold(const struct gripper *g, json_t *metrics) {
                                      "wrap_angle_deg",           "curvature_match",
                                      "bending_angle_deg"};
   const struct grasp_sample *hold = last_of(&g->sum, STAGE_INFLATION);
+  const struct grasp_sample *drawn = last_of(&g->sum, STAGE_SUCTION);
   json_t *object = hold ? grasp_sample_object(hold) : NULL;
   for (size_t i = 0; object && i < sizeof keys / sizeof *keys; i++) {
     json_object_set(metrics, keys[i], json_object_get(object, keys[i]));
   }
   if (object && g->spec->family == FAMILY_PNEUNET && g->spec->pneunet.sucker_count > 0) {
-    json_object_set(metrics, "suction_force_N", json_object_get(object, "suction_force_N"));
+    json_set_finite(metrics, "suction_force_N", (drawn ? drawn : hold)->value[GRASP_SUCTION]);
   }
   if (object && g->spec->grasp->blocked) {
     json_object_set(metrics, "blocked_force_N", json_object_get(object, "grasp_force_N"));

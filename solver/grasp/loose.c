@@ -32,6 +32,7 @@ enum status loose_begin(struct finger *f, struct error *error) {
     const double axis[3] = {cos(fingers->tilt), 0, -sin(fingers->tilt)};
     free_object_guide(l->object, axis);
   }
+  loose_apply(f, 0, 0);
   free_object_resultant(l->object, l->support);
   for (int i = 0; i < 6; i++) {
     l->support[i] = -l->support[i];
@@ -56,9 +57,13 @@ void loose_end(struct finger *f) {
 void loose_apply(struct finger *f, double support, double pull) {
   struct free_object *o = f->loose.object;
   double force = pull * f->grasp.pull.force / (f->grasp.fingers.count * f->whole);
-  for (int i = 0; i < 6; i++) {
-    o->applied[i] =
-        support * f->loose.support[i] + (i < 3 ? force * f->grasp.pull.direction[i] : 0);
+  const double *cups = f->cups.force;
+  double centre[3], carried[3];
+  free_object_centroid(o, centre);
+  vec3_cross(centre, cups, carried);
+  for (int i = 0; i < 3; i++) {
+    o->applied[i] = support * f->loose.support[i] + force * f->grasp.pull.direction[i] + cups[i];
+    o->applied[3 + i] = support * f->loose.support[3 + i] + cups[3 + i] - carried[i];
   }
   find_direction(f, force > 0);
 }

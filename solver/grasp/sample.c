@@ -38,7 +38,7 @@ static const struct {
 };
 
 const char *grasp_stage_word(enum grasp_stage stage) {
-  static const char *const words[STAGE_COUNT] = {"gravity",    "approach", "inflation",
+  static const char *const words[STAGE_COUNT] = {"gravity",    "approach", "inflation", "suction",
                                                  "letting go", "pull",     "release"};
   return words[stage];
 }

@@ -11,6 +11,7 @@ enum grasp_stage {
   STAGE_GRAVITY,
   STAGE_APPROACH,
   STAGE_INFLATION,
+  STAGE_SUCTION,
   STAGE_LETTING_GO,
   STAGE_PULL,
   STAGE_RELEASE,
@@ -40,9 +41,10 @@ enum grasp_number {
   GRASP_SLIP,       /* share of the normal force where the body slips */
   GRASP_WRAP,       /* angle by which the contact normal turns along the body, rad */
   GRASP_MATCH,      /* of the curvatures of body and object where they touch, up to 1 */
-  GRASP_SUCTION,    /* of suckers whose rim is closed, N */
-  GRASP_RUBBED,     /* work of friction since the start, J */
-  GRASP_BENDING,    /* bending angle, rad */
+  GRASP_SUCTION, /* of suckers that hold, N: up to the inflation what those with a closed rim would
+                  */
+  GRASP_RUBBED,  /* work of friction since the start, J */
+  GRASP_BENDING, /* bending angle, rad */
   GRASP_NUMBERS
 };
 
