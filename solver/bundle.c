@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <jansson.h>
+#include <malloc.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,7 +19,7 @@
 #include "solver/post/output.h"
 #include "solver/run.h"
 
-enum { PATH_SIZE = OUTPUT_PATH };
+enum { PATH_SIZE = OUTPUT_PATH, HEAP_BLOCK = 1 << 30 };
 
 struct bundle {
   const struct bundle_options *options;
@@ -251,6 +252,10 @@ static void bundle_close(struct bundle *bundle) {
 
 int bundle_run(const struct bundle_options *options) {
   struct bundle bundle = {.options = options};
+  /* The members are of one size: what one has freed serves the next, without the kernel clearing it
+   * anew. */
+  mallopt(M_MMAP_THRESHOLD, HEAP_BLOCK);
+  mallopt(M_TRIM_THRESHOLD, HEAP_BLOCK);
   struct error error = {.status = STATUS_OK};
   enum status status = bundle_open(&bundle, &error);
   size_t count = json_array_size(bundle.members), next = 0;

@@ -1,4 +1,4 @@
-/* Several jobs in one process, each starting from what the one before has left.
+/* Several jobs in one process, each starting from what those before it have left.
  *
  * The file of a bundle is { "members": [ "FOLDER", ... ], "from": "FILE", "starts": [ 8, ... ] }.
  * `starts` are the members (counted from 0) that begin a chain of their own: they start from the
@@ -6,9 +6,9 @@
  * member's events.jsonl, log.txt, folder out with artifacts and at last result.json are written
  * there as by a run of its own: result.json is the result, or a document that tells the error, and
  * has its name only when it is complete. While another member follows, the folder also has a file
- * `path` with the converged states that it starts from: it goes when that member is done, so that a
- * bundle which ended in between can be taken up by another one whose `from` names it, to the same
- * bits.
+ * `path` with the converged states: it goes when that member is done, so that a bundle which ended
+ * in between can be taken up by another one whose `from` names it. That one knows no member before
+ * it: its results are the same to the solver's tolerance, not to the bit.
  *
  * On standard output each member has two lines,
  *   {"event": "begun", "member": 0}
@@ -19,9 +19,9 @@
  * A member that is cancelled (solver/cancel.h) is done with the exit code 5, and the next one
  * follows; so is one whose folder has lost its job.json, with another code.
  *
- * A body whose mesh has another topology than the one before, and one whose predecessor has not
- * reached its load, starts from the undeformed state. Results depend on the members of the bundle
- * and their order, and on nothing else. */
+ * A member starts from what is expected of it after all members of its chain with the topology of
+ * its mesh that have reached their load (solver/fe/forecast.h); without such, from the undeformed
+ * state. Results depend on the members of the bundle and their order, and on nothing else. */
 #ifndef PNEULAB_BUNDLE_H
 #define PNEULAB_BUNDLE_H
 

@@ -6,7 +6,7 @@
 #include "solver/bistable/dynamics.h"
 #include "solver/bistable/result.h"
 #include "solver/estimate.h"
-#include "solver/fe/warm.h"
+#include "solver/fe/forecast.h"
 #include "solver/grasp/grasp_job.h"
 #include "solver/identify/identify_job.h"
 #include "solver/material/curve_job.h"
@@ -67,11 +67,8 @@ static enum status take_point(void *context, const struct path_point *point) {
 static enum status prepare(struct run *run, struct error *error) {
   const struct job_spec *spec = run->spec;
   struct run_carry *carry = run->options->carry;
-  struct ldlt *spare = carry ? carry->analysis : NULL;
-  if (carry) {
-    carry->analysis = NULL;
-  }
-  enum status status = solve_prepare_with(spec, spare, &run->solve, error);
+  enum status status =
+      solve_prepare_with(spec, carry ? &carry->analyses : NULL, &run->solve, error);
   if (status != STATUS_OK) {
     return status;
   }
@@ -103,6 +100,23 @@ static void estimate(struct run *run) {
   result_compare(run->result, status == STATUS_OK ? &finer : NULL, &error, clock_cpu_s() - start);
 }
 
+/* The path to start from, as far as what is carried tells. */
+static enum status foresee(struct run *run, struct run_carry *carry) {
+  double place[DESIGN_NUMBERS];
+  enum status status = STATUS_OK;
+  if (!carry->earlier) {
+    carry->earlier = forecast_create();
+    status = carry->earlier ? STATUS_OK : STATUS_NO_MEMORY;
+  }
+  if (status == STATUS_OK && carry->path) {
+    status = forecast_add(carry->earlier, carry->path);
+    carry->path = NULL;
+  }
+  design_numbers(run->spec, place);
+  return status == STATUS_OK ? forecast_make(carry->earlier, run->solve.model, place, &run->from)
+                             : status;
+}
+
 /* Opens the path to start from and the one to be kept, as asked for. */
 static enum status open_paths(struct run *run, struct error *error) {
   enum status status = STATUS_OK;
@@ -110,12 +124,14 @@ static enum status open_paths(struct run *run, struct error *error) {
     status = path_record_read(run->options->path_in, &run->from, error);
   }
   struct run_carry *carry = run->options->carry;
-  if (status == STATUS_OK && carry && carry->path) {
-    run->from = carry->path;
-    carry->path = NULL;
+  if (status == STATUS_OK && carry) {
+    status = foresee(run, carry);
   }
   if (status == STATUS_OK && (run->options->path_out || carry)) {
     status = path_record_create(run->solve.model, &run->path);
+  }
+  if (status == STATUS_OK && run->path) {
+    design_numbers(run->spec, run->path->place);
   }
   return status;
 }
@@ -124,16 +140,16 @@ static enum status open_paths(struct run *run, struct error *error) {
 static void hand_over(struct run *run, enum status ending) {
   struct run_carry *carry = run->options->carry;
   if (carry && run->solve.model && ending == STATUS_OK) {
-    run_carry_release(carry);
     path_record_note_pairs(run->path, run->solve.model);
-    *carry = (struct run_carry){run->path, model_release_analysis(run->solve.model)};
+    carry->path = run->path;
     run->path = NULL;
   }
 }
 
 void run_carry_release(struct run_carry *carry) {
   path_record_destroy(carry->path);
-  ldlt_destroy(carry->analysis);
+  forecast_destroy(carry->earlier);
+  analyses_release(&carry->analyses);
   *carry = (struct run_carry){0};
 }
 

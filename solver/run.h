@@ -4,15 +4,16 @@
 
 #include <jansson.h>
 #include <stdio.h>
-#include "solver/job/spec.h"
+#include "solver/fe/model.h"
 
+struct forecast;
 struct path_record;
-struct ldlt;
 
-/* What one solve leaves to the next of a chain, in memory; all NULL at first. */
+/* What one solve leaves to the next of a chain, in memory; all 0 at first. */
 struct run_carry {
-  struct path_record *path; /* converged states of the last solve that reached its load */
-  struct ldlt *analysis;    /* of its tangents */
+  struct path_record *path;    /* converged states of the last solve that reached its load */
+  struct forecast *earlier;    /* those of solves before it */
+  struct fe_analyses analyses; /* of their tangents */
 };
 
 /* Releases what is carried, and clears it. */
@@ -24,7 +25,7 @@ struct run_options {
   const char *path_in;   /* file of a neighbouring design's path to start from, NULL: none */
   const char *path_out;  /* file for the path, for such use, NULL: none */
   /* The solve starts from what is carried, where its mesh has the same topology, and leaves its own
-   * there; nothing when it does not reach its load. NULL: none. */
+   * there when it reaches its load. NULL: none. */
   struct run_carry *carry;
   FILE *events; /* progress as JSON lines, NULL: none */
   bool verbose; /* iterations on standard error */

@@ -13,7 +13,7 @@ enum status solve_prepare(const struct job_spec *spec, struct solve *solve, stru
   return solve_prepare_with(spec, NULL, solve, error);
 }
 
-enum status solve_prepare_model(const struct job_spec *spec, struct ldlt *spare,
+enum status solve_prepare_model(const struct job_spec *spec, struct fe_analyses *spare,
                                 struct solve *solve, struct error *error) {
   enum status status =
       model_create_with(&solve->mesh, &spec->material, spec->contact, spare, &solve->model, error);
@@ -55,8 +55,8 @@ enum status solve_prepare_solver(const struct job_spec *spec, struct solve *solv
   return STATUS_OK;
 }
 
-enum status solve_prepare_with(const struct job_spec *spec, struct ldlt *spare, struct solve *solve,
-                               struct error *error) {
+enum status solve_prepare_with(const struct job_spec *spec, struct fe_analyses *spare,
+                               struct solve *solve, struct error *error) {
   enum status status = solve_prepare_model(spec, spare, solve, error);
   return status == STATUS_OK ? solve_prepare_solver(spec, solve, error) : status;
 }

@@ -17,12 +17,12 @@ struct solve {
  * failures of model_create and equilibrium_create. */
 enum status solve_prepare(const struct job_spec *spec, struct solve *solve, struct error *error);
 
-/* The same with the analysis of another body, as in model_create_with. */
-enum status solve_prepare_with(const struct job_spec *spec, struct ldlt *spare, struct solve *solve,
-                               struct error *error);
+/* The same with analyses of other bodies, as in model_create_with. */
+enum status solve_prepare_with(const struct job_spec *spec, struct fe_analyses *spare,
+                               struct solve *solve, struct error *error);
 
 /* The same in two parts, between which objects can be added: the model, then solver and state. */
-enum status solve_prepare_model(const struct job_spec *spec, struct ldlt *spare,
+enum status solve_prepare_model(const struct job_spec *spec, struct fe_analyses *spare,
                                 struct solve *solve, struct error *error);
 enum status solve_prepare_solver(const struct job_spec *spec, struct solve *solve,
                                  struct error *error);

@@ -6,9 +6,10 @@
 /* Part by which a walk has to get shorter to be another one: less is rounding. */
 static const double least_gain = 1e-9;
 
+enum { LEAST_CHAINS = 4, LEAST_CHAINS_LIGHT = 8 };
+
 size_t chain_length(size_t members, bool light) {
-  enum { LEAST_CHAINS = 8 };
-  size_t share = members / LEAST_CHAINS;
+  size_t share = members / (light ? LEAST_CHAINS_LIGHT : LEAST_CHAINS);
   size_t most = light ? CHAIN_LENGTH_MAX : CHAIN_LENGTH_HEAVY;
   return share < 1 ? 1 : share < most ? share : most;
 }
@@ -35,7 +36,8 @@ static void normalise(const double *value, const struct chain_dimension *dimensi
   }
 }
 
-/* Square of the distance: of a dimension that only one of the two has, or of different words, 1. */
+/* Square of the distance: of a dimension that only one of the two has 1, of different words as much
+ * as all dimensions can have. */
 static double apart(const double *a, const double *b, const struct chain_dimension *dimension,
                     size_t dimensions) {
   double sum = 0;
@@ -44,7 +46,9 @@ static double apart(const double *a, const double *b, const struct chain_dimensi
     if (isnan(difference)) {
       sum += !isnan(a[d]) || !isnan(b[d]);
     } else {
-      sum += dimension[d].categorical ? difference != 0 : difference * difference;
+      sum += !dimension[d].categorical ? difference * difference
+             : difference != 0         ? (double)dimensions
+                                       : 0;
     }
   }
   return sum;
@@ -114,13 +118,31 @@ static void shorten(const struct tour *tour) {
   }
 }
 
-/* Where the chain that begins at `from` ends: after the longest leg of its second half, of equals
- * the last. */
+/* Whether a word changes between the designs at two places of the walk. */
+static bool words_differ(const struct tour *tour, size_t i, size_t j) {
+  const double *a = &tour->point[tour->walk[i] * tour->dimensions];
+  const double *b = &tour->point[tour->walk[j] * tour->dimensions];
+  for (size_t d = 0; d < tour->dimensions; d++) {
+    if (tour->dimension[d].categorical && a[d] != b[d] && !(isnan(a[d]) && isnan(b[d]))) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/* Where the chain that begins at `from` ends: with the last member if that is near enough; where a
+ * word changes, unless the chain is short then; or after the longest leg of its second half, of
+ * equals the last. */
 static size_t cut(const struct tour *tour, size_t from, size_t length) {
   size_t to = from + length, best = to;
   double longest = -1;
   if (to >= tour->members) {
     return tour->members;
+  }
+  for (size_t end = from + (length + 3) / 4; end <= to; end++) {
+    if (words_differ(tour, end - 1, end)) {
+      return end;
+    }
   }
   for (size_t end = from + (length + 1) / 2; end <= to; end++) {
     double jump = leg(tour, end - 1, end);

@@ -9,7 +9,8 @@ enum {
   STALL_ITERATIONS = 5, /* give up after so many without a smaller correction */
   BACKTRACKS = 5,
   LINE_SEARCHES = 3,
-  CHORD_STEPS = 12
+  CHORD_STEPS = 12,
+  CHORDS_WORTH = 5 /* chords that take as long as a factorisation with its tangent */
 };
 
 /* Steps of which less than this part can be taken are cut short by far. */
@@ -189,6 +190,13 @@ static enum status take_step(struct equilibrium *s, struct fe_load *load, double
   return status;
 }
 
+/* Whether, at the rate from `size` to `next`, chords converge in less time than a factorisation
+ * takes. */
+static bool worth_going_on(const struct equilibrium *s, double next, double size) {
+  double rate = next / size, left = s->options.step_tolerance * (1 - rate);
+  return s->options.hasty && rate > 0 && rate < 0.7 && next * pow(rate, CHORDS_WORTH) < left;
+}
+
 bool equilibrium_polish(struct equilibrium *s, struct fe_load *load, struct fe_state *state,
                         const struct polishing *polishing) {
   struct fe_model *m = s->model;
@@ -197,7 +205,7 @@ bool equilibrium_polish(struct equilibrium *s, struct fe_load *load, struct fe_s
   for (int k = 0; k < CHORD_STEPS; k++) {
     double change = correction(s, s->chord), *parameter = load_parameter(s, load);
     double next = size_of(s, s->chord);
-    if (!(next <= limit * size) && !(next < 0.1 * tolerance)) {
+    if (!(next <= limit * size) && !(next < 0.1 * tolerance) && !worth_going_on(s, next, size)) {
       return false;
     }
     keep_state(s, state);

@@ -7,7 +7,8 @@
 
 enum {
   AUGMENTATIONS = 30,
-  PATIENCE = 6 /* updates before swinging tractions are put up with */
+  PATIENCE = 6, /* updates before swinging tractions are put up with */
+  SHORT_PATIENCE = 3
 };
 
 /* Overlap, in thicknesses of the thinnest wall, that is put up with when multipliers do not settle:
@@ -17,8 +18,9 @@ static const double little_overlap = 0.002, most_overlap = 0.015;
 static const double unsettled_forces = 0.02;
 /* The same, in force tolerances, once the body is still. */
 static const double still_forces = 5;
-/* Movement of a body at rest, and of one that is still, in step tolerances. */
-static const double still_moves = 30, unmoved = 5;
+/* Movement of a body at rest, of one with which patience is short, and of one that is still, in
+ * step tolerances. */
+static const double still_moves = 30, calm_moves = 10, unmoved = 5;
 
 /* Finds the partners of the contact at the state that has been reached, with their tractions. A
  * state in which a part of the body has passed into another is none. */
@@ -53,7 +55,8 @@ static enum status rebalance(struct equilibrium *s, struct fe_load *load, struct
 static bool settled(const struct equilibrium *s, double change, int updates) {
   const struct equilibrium_options *o = &s->options;
   bool still = s->moved < still_moves * o->step_tolerance;
-  bool apart = updates >= PATIENCE &&
+  bool calm = o->hasty && s->moved < calm_moves * o->step_tolerance;
+  bool apart = updates >= (calm ? SHORT_PATIENCE : PATIENCE) &&
                contact_summarise(&s->model->contact).penetration < o->overlap_tolerance;
   return change < 0.1 * o->traction_tolerance ||
          (still && (change < o->traction_tolerance || apart));

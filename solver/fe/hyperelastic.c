@@ -16,6 +16,16 @@ double kinematics_complete(struct kinematics *k) {
   return k->j;
 }
 
+double symmetric3_largest(const double c[9]) {
+  double mean = (c[0] + c[4] + c[8]) / 3, a = c[0] - mean, b = c[4] - mean, d = c[8] - mean;
+  double off = c[1] * c[1] + c[2] * c[2] + c[5] * c[5];
+  double spread = sqrt((a * a + b * b + d * d + 2 * off) / 6);
+  double det =
+      a * (b * d - c[5] * c[5]) - c[1] * (c[1] * d - c[5] * c[2]) + c[2] * (c[1] * c[5] - b * c[2]);
+  double cosine = spread > 0 ? 0.5 * det / (spread * spread * spread) : 1;
+  return mean + 2 * spread * cos(acos(fmax(-1, fmin(1, cosine))) / 3);
+}
+
 void symmetric3_eigen(const double c[9], double value[3], double v[9]) {
   double a[9];
   memcpy(a, c, sizeof a);

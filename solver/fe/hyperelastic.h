@@ -25,4 +25,8 @@ double hyperelastic_isochoric(const struct material_spec *material, const struct
  * matrix c by cyclic Jacobi rotations. */
 void symmetric3_eigen(const double c[9], double value[3], double v[9]);
 
+/* The largest eigenvalue alone, in closed form (Smith 1961): right to 1e-8 of the spread of the
+ * three. */
+double symmetric3_largest(const double c[9]);
+
 #endif

@@ -39,6 +39,8 @@ void ldlt_destroy(struct ldlt *ldlt);
  * whose factorisations come out to the same bits. */
 bool ldlt_fits(const struct ldlt *ldlt, const struct ldlt_pattern *pattern);
 
+int ldlt_clique_count(const struct ldlt *ldlt);
+
 /* Factorises the sum of the cliques. values[c] is the upper triangle by rows of clique c in the
  * order of its dofs, or NULL when it is absent this time. Returns the number of negative
  * pivots. */

@@ -450,6 +450,10 @@ void ldlt_destroy(struct ldlt *f) {
   free(f);
 }
 
+int ldlt_clique_count(const struct ldlt *f) {
+  return f->clique_count;
+}
+
 struct ldlt_statistics ldlt_statistics(const struct ldlt *f) {
   return f->statistics;
 }

@@ -71,12 +71,11 @@ enum status model_create(const struct mesh *mesh, const struct material_spec *ma
 }
 
 enum status model_create_with(const struct mesh *mesh, const struct material_spec *material,
-                              bool use_contact, struct ldlt *spare, struct fe_model **out,
+                              bool use_contact, struct fe_analyses *spare, struct fe_model **out,
                               struct error *error) {
   struct fe_model *m = calloc(1, sizeof *m);
   *out = NULL;
   if (!m) {
-    ldlt_destroy(spare);
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for a model");
   }
   m->mesh = mesh;
@@ -110,7 +109,7 @@ enum status model_create_with(const struct mesh *mesh, const struct material_spe
     status = contact_add_plane(&m->contact, &mirror);
   }
   m->pattern_stale = true;
-  if (status == STATUS_OK && !spare && /* which would not fit the body at rest */
+  if (status == STATUS_OK && !spare && /* which knows later what is needed first */
       (!model_room_for_pairs(m) || model_renew_pattern(m) != STATUS_OK)) {
     status = error_set(error, STATUS_NO_MEMORY, NULL, "no memory for the tangent");
   }
@@ -122,11 +121,10 @@ enum status model_create_with(const struct mesh *mesh, const struct material_spe
   return STATUS_OK;
 }
 
-struct ldlt *model_release_analysis(struct fe_model *m) {
-  struct ldlt *ldlt = m->ldlt;
-  m->ldlt = NULL;
-  m->pattern_stale = true;
-  return ldlt;
+void analyses_release(struct fe_analyses *analyses) {
+  ldlt_destroy(analyses->bare);
+  ldlt_destroy(analyses->touching);
+  *analyses = (struct fe_analyses){0};
 }
 
 void model_destroy(struct fe_model *m) {
@@ -135,8 +133,7 @@ void model_destroy(struct fe_model *m) {
   }
   contact_release(&m->contact);
   obstacles_release(m);
-  ldlt_destroy(m->ldlt);
-  ldlt_destroy(m->spare);
+  model_park_analysis(m);
   free(m->geometry);
   free(m->internal);
   free(m->cavity_start);

@@ -27,6 +27,12 @@ struct fe_load {
   double dead;               /* factor of the dead load */
 };
 
+/* Analyses of tangents that are not in use: of bodies of one mesh topology without any contact of
+ * the surface with itself, and with the pairs that touched last; each may be NULL. */
+struct fe_analyses {
+  struct ldlt *bare, *touching;
+};
+
 /* Where the time went, CPU s. */
 struct fe_statistics {
   int assemblies, residuals, factorizations, solves, newton_iterations;
@@ -55,7 +61,7 @@ struct fe_model {
   double *element_value;        /* packed tangents */
   double *contact_value;        /* packed tangents of the listed pairs */
   unsigned char *pair_touches;  /* of every listed pair: in the last tangent */
-  unsigned char *pair_foreseen; /* pairs that the next analysis takes in as well, or NULL */
+  unsigned char *pair_foreseen; /* pairs that every analysis with some takes in as well, or NULL */
   int *pair_clique;             /* of every listed pair: its clique behind the elements, or -1 */
   int pair_room, pattern_pairs; /* pairs that there is room for, and pairs with a clique */
   const double **clique_value;
@@ -65,8 +71,8 @@ struct fe_model {
   int obstacle_count;
   struct obstacle *obstacle[MODEL_OBSTACLES]; /* rigid objects: solver/fe/obstacle.h */
   struct ldlt *ldlt;
-  struct ldlt *spare;            /* the analysis of another model, or NULL */
-  struct ldlt_statistics factor; /* of the last analysis */
+  struct fe_analyses *spare;     /* to be used where they fit, and added to; NULL; borrowed */
+  struct ldlt_statistics factor; /* of the analysis that took most */
   struct fe_statistics statistics;
   /* Adds to residual and tangent while a step in time is solved, else NULL; borrowed. */
   struct inertia *inertia;
@@ -80,22 +86,24 @@ enum status model_create(const struct mesh *mesh, const struct material_spec *ma
                          bool use_contact, struct fe_model **out, struct error *error);
 void model_destroy(struct fe_model *model);
 
-/* As model_create, with the analysis of another model, which becomes the new one's, or NULL: the
- * first tangent is assembled with it where it fits. */
+/* As model_create, with analyses of other models, which must outlive this one, or NULL: tangents
+ * are assembled with them where they fit, and new ones are put there when they are no longer in
+ * use, the last at model_destroy. */
 enum status model_create_with(const struct mesh *mesh, const struct material_spec *material,
-                              bool use_contact, struct ldlt *spare, struct fe_model **out,
+                              bool use_contact, struct fe_analyses *spare, struct fe_model **out,
                               struct error *error);
+void analyses_release(struct fe_analyses *analyses);
 
-/* Which of the pairs across gaps are part of the analysed tangent: facing[mesh->facing_count]. */
+/* Which of the pairs across gaps have been part of tangents: facing[mesh->facing_count]. */
 void model_tell_pattern(const struct fe_model *model, unsigned char *facing);
 
-/* Has the next analysis take in these pairs, too: those of a neighbouring body, whose analysis then
- * fits. STATUS_NO_MEMORY. */
+/* Has every analysis with some pairs take in these, too: those of a neighbouring body, whose
+ * analysis then fits. STATUS_NO_MEMORY. */
 enum status model_foresee_pattern(struct fe_model *model, const unsigned char *facing);
 
-/* Takes the analysis out of a model that is solved no more, for model_create_with; ldlt_destroy is
- * then the caller's. */
-struct ldlt *model_release_analysis(struct fe_model *model);
+/* Has the next tangent choose its pairs anew where there are spare analyses: for a state that is
+ * far from the last one, and may do without contact. */
+void model_renew_pairs(struct fe_model *model);
 
 /* Gives up what only solving needs (factor and tangents): the model can then no
  * longer be evaluated, but volumes, gaps, mesh and statistics are still there. */

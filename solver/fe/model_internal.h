@@ -15,6 +15,9 @@ bool model_room_for_pairs(struct fe_model *model);
  * is ordered and analysed anew. STATUS_NO_MEMORY. */
 enum status model_renew_pattern(struct fe_model *model);
 
+/* Puts the analysis in use to the spare ones, or without such destroys it. */
+void model_park_analysis(struct fe_model *model);
+
 /* Adds contact to the residual and, with `tangent`, to the cliques, after the elements have been
  * evaluated. With `tangent` the partners are found anew first. STATUS_NO_MEMORY. */
 enum status model_evaluate_contact(struct fe_model *model, const double *u, bool tangent);

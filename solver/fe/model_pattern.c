@@ -76,17 +76,50 @@ static bool about_to_touch(const struct fe_model *m, int pair) {
 }
 
 /* Gives the pairs of the pattern their places behind the elements. Pairs that are not across a gap
- * are listed only when they are near. */
+ * are listed only when they are near. Those that were foreseen come with the first that is needed,
+ * and those that are needed are foreseen from then on: patterns that grow pair by pair would each
+ * take an analysis. */
 static void choose_pairs(struct fe_model *m) {
-  int facing = m->mesh->facing_count;
-  m->pattern_pairs = 0;
-  for (int p = 0; m->use_contact && p < m->contact.pair_count; p++) {
-    bool in = p >= facing || m->pair_touches[p] || about_to_touch(m, p) ||
-              (m->pair_foreseen && m->pair_foreseen[p]);
-    m->pair_clique[p] = in ? m->pattern_pairs++ : -1;
+  int facing = m->mesh->facing_count, pairs = m->use_contact ? m->contact.pair_count : 0;
+  bool any = false;
+  for (int p = 0; p < pairs; p++) {
+    bool needed = p >= facing || m->pair_touches[p] || about_to_touch(m, p);
+    any = any || needed;
+    m->pair_clique[p] = needed ? 0 : -1;
   }
-  free(m->pair_foreseen);
-  m->pair_foreseen = NULL;
+  m->pattern_pairs = 0;
+  for (int p = 0; p < pairs; p++) {
+    bool foreseen = any && m->pair_foreseen && p < facing && m->pair_foreseen[p];
+    bool in = m->pair_clique[p] >= 0 || foreseen;
+    m->pair_clique[p] = in ? m->pattern_pairs++ : -1;
+    if (in && m->pair_foreseen && p < facing) {
+      m->pair_foreseen[p] = 1;
+    }
+  }
+}
+
+/* Puts the analysis of this pattern in use, if a spare one is. */
+static bool take_spare(struct fe_model *m, struct ldlt **spare,
+                       const struct ldlt_pattern *pattern) {
+  if (!*spare || !ldlt_fits(*spare, pattern)) {
+    return false;
+  }
+  m->ldlt = *spare;
+  *spare = NULL;
+  return true;
+}
+
+void model_park_analysis(struct fe_model *m) {
+  struct fe_analyses *spare = m->spare;
+  if (spare && m->ldlt) {
+    bool bare = ldlt_clique_count(m->ldlt) == m->mesh->element_count;
+    struct ldlt **place = bare ? &spare->bare : &spare->touching;
+    ldlt_destroy(*place);
+    *place = m->ldlt;
+  } else {
+    ldlt_destroy(m->ldlt);
+  }
+  m->ldlt = NULL;
 }
 
 /* Orders and analyses the tangent for the chosen pairs. */
@@ -100,23 +133,25 @@ static enum status analyse(struct fe_model *m) {
   enum status status = STATUS_NO_MEMORY;
   if (start && dofs) {
     list_cliques(m, start, dofs);
-    ldlt_destroy(m->ldlt);
-    m->ldlt = NULL;
     struct ldlt_pattern pattern = {m->dof_count, mesh->node_count, m->node_of, cliques, start,
                                    dofs};
-    if (m->spare && ldlt_fits(m->spare, &pattern)) {
-      m->ldlt = m->spare;
-      m->spare = NULL;
+    model_park_analysis(m);
+    if (m->spare && (take_spare(m, &m->spare->bare, &pattern) ||
+                     take_spare(m, &m->spare->touching, &pattern))) {
       status = STATUS_OK;
     } else {
+      if (m->spare && m->pattern_pairs > 0) { /* it would only take memory */
+        ldlt_destroy(m->spare->touching);
+        m->spare->touching = NULL;
+      }
       status = ldlt_create(&pattern, &m->ldlt, NULL);
       m->statistics.analyses++;
     }
-    ldlt_destroy(m->spare);
-    m->spare = NULL;
   }
   m->pattern_stale = status != STATUS_OK;
-  m->factor = status == STATUS_OK ? ldlt_statistics(m->ldlt) : m->factor;
+  if (status == STATUS_OK && ldlt_statistics(m->ldlt).flops > m->factor.flops) {
+    m->factor = ldlt_statistics(m->ldlt);
+  }
   free(start);
   free(dofs);
   return status;
@@ -146,13 +181,18 @@ enum status model_renew_pattern(struct fe_model *m) {
 
 void model_tell_pattern(const struct fe_model *m, unsigned char *facing) {
   for (int p = 0; p < m->mesh->facing_count; p++) {
-    facing[p] = m->pair_clique && p < m->pair_room && m->pair_clique[p] >= 0;
+    bool now = m->pair_clique && p < m->pair_room && m->pair_clique[p] >= 0;
+    facing[p] = now || (m->pair_foreseen && m->pair_foreseen[p]);
   }
+}
+
+void model_renew_pairs(struct fe_model *m) {
+  m->pattern_stale = m->pattern_stale || m->spare;
 }
 
 enum status model_foresee_pattern(struct fe_model *m, const unsigned char *facing) {
   size_t count = (size_t)m->mesh->facing_count;
-  unsigned char *copy = calloc((size_t)m->contact.pair_count + 1, 1);
+  unsigned char *copy = malloc(count + 1);
   if (!copy) {
     return STATUS_NO_MEMORY;
   }

@@ -14,7 +14,7 @@ struct head {
   uint64_t topology;
 };
 static const char magic[8] = "pneupath";
-enum { BYTE_ORDER_MARK = 0x01020304, FILE_VERSION = 3, COUNT_MAX = 1 << 24 };
+enum { BYTE_ORDER_MARK = 0x01020304, FILE_VERSION = 4, COUNT_MAX = 1 << 24 };
 
 static bool allocate_state(const struct path_record *r, struct fe_state *state) {
   state->u = malloc(sizeof *state->u * (3 * (size_t)r->node_count + 1));
@@ -133,6 +133,7 @@ static bool write_all(FILE *file, const struct path_record *r) {
                       .topology = r->topology};
   memcpy(head.magic, magic, sizeof magic);
   bool good = fwrite(&head, sizeof head, 1, file) == 1 &&
+              fwrite(r->place, sizeof r->place, 1, file) == 1 &&
               transfer(file, true, r->x, 3 * (size_t)r->node_count) &&
               fwrite(r->facing, 1, (size_t)r->facing_count, file) == (size_t)r->facing_count;
   for (int k = 0; k < r->count && good; k++) {
@@ -187,7 +188,8 @@ static enum status read_all(FILE *file, struct path_record *r, struct error *err
   if (!r->x || !r->facing) {
     return error_set(error, STATUS_NO_MEMORY, NULL, "no memory for a path");
   }
-  bool good = transfer(file, false, r->x, 3 * (size_t)r->node_count) &&
+  bool good = fread(r->place, sizeof r->place, 1, file) == 1 &&
+              transfer(file, false, r->x, 3 * (size_t)r->node_count) &&
               fread(r->facing, 1, (size_t)r->facing_count, file) == (size_t)r->facing_count;
   for (int k = 0; k < h.count && good; k++) {
     if (!grow(r)) {

@@ -110,19 +110,41 @@ static bool recorded(const struct path_record *r, double pressure, double previo
   return fmax(near, near_previous) < 1e-6 * previous;
 }
 
+/* Equilibrium at load `pressure` below `previous` from a guess. By what a design differs from one
+ * other at a load, it differs at the next, too; but what was expected from several is off in any
+ * direction, so that it is tried as it is. */
+static enum status solve_guess(struct descent *d, const struct fe_load *load, double previous,
+                               bool corrected, int *iterations) {
+  const struct path_record *r = d->record;
+  int spent = *iterations;
+  enum status status =
+      corrected ? guess(d, load->pressure, previous)
+                : path_record_carry(r, nearest(r, load->pressure), d->solver->model, d->state);
+  d->solver->factor_fits = false;
+  model_renew_pairs(d->solver->model);
+  if (status == STATUS_OK) {
+    status = equilibrium_solve(d->solver, load, load->pressure, d->state, iterations);
+    *iterations += spent;
+  }
+  return status;
+}
+
+static bool final(enum status status) {
+  return status == STATUS_TIMEOUT || status == STATUS_CANCELLED || status == STATUS_NO_MEMORY;
+}
+
 /* Equilibrium at a load below `previous`. */
 static enum status step_down(struct descent *d, double pressure, double previous, int *iterations) {
   struct fe_load load = {pressure, pressure, d->options->dead_load ? 1 : 0};
-  double start = previous;
-  if (recorded(d->record, pressure, previous)) {
-    enum status status = guess(d, pressure, previous);
-    if (status != STATUS_OK) {
-      return status;
-    }
-    d->solver->factor_fits = false;
-    start = pressure;
+  bool mixed = d->record->mixed;
+  if (!recorded(d->record, pressure, previous)) {
+    return equilibrium_solve(d->solver, &load, previous, d->state, iterations);
   }
-  return equilibrium_solve(d->solver, &load, start, d->state, iterations);
+  enum status status = solve_guess(d, &load, previous, !mixed, iterations);
+  if (mixed && status != STATUS_OK && !final(status)) {
+    status = solve_guess(d, &load, previous, true, iterations);
+  }
+  return status;
 }
 
 static enum status descend(struct descent *d) {

@@ -10,12 +10,15 @@
 
 #include <stdint.h>
 #include "solver/fe/path.h"
+#include "solver/job/design.h"
 
 /* Recorded states of a path, with the undeformed body they belong to. */
 struct path_record {
   int node_count, element_count, section_count, point_count;
-  uint64_t topology;     /* of the mesh: bodies with another one are no neighbours */
-  double *x;             /* node_count x 3, undeformed, m */
+  uint64_t topology;            /* of the mesh: bodies with another one are no neighbours */
+  double *x;                    /* node_count x 3, undeformed, m */
+  double place[DESIGN_NUMBERS]; /* the design as a point */
+  bool mixed; /* no path that was followed, but one expected from several: of the body itself */
   int facing_count;      /* pairs of faces across gaps */
   unsigned char *facing; /* of each: whether it was part of the body's last tangents */
   int count, capacity;

@@ -106,12 +106,11 @@ void shape_midline(const struct mesh *mesh, const double *u, double *out) {
 }
 
 static double largest_stretch(const double f[9]) {
-  double c[9], value[3], v[9];
+  double c[9];
   for (int i = 0; i < 9; i++) {
     c[i] = f[i / 3] * f[i % 3] + f[3 + i / 3] * f[3 + i % 3] + f[6 + i / 3] * f[6 + i % 3];
   }
-  symmetric3_eigen(c, value, v);
-  return sqrt(value[0]);
+  return sqrt(symmetric3_largest(c));
 }
 
 double shape_stretch(const struct fe_model *model, const double *u, double *node_stretch) {

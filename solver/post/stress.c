@@ -94,9 +94,7 @@ double stress_von_mises(const double s[STRESS_COMPONENTS]) {
 }
 
 double stress_largest(const double s[STRESS_COMPONENTS]) {
-  double matrix[9] = {s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2]}, value[3], v[9];
-  symmetric3_eigen(matrix, value, v);
-  return value[0];
+  return symmetric3_largest((double[9]){s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2]});
 }
 
 double stress_pressure(const double s[STRESS_COMPONENTS]) {

@@ -130,6 +130,24 @@ START_TEST(words_part_more_than_numbers) {
 }
 END_TEST
 
+/* Three kinds of 7, 2 and 9 designs: a chain ends where the kind changes, but two are too few to be
+ * one of their own. */
+START_TEST(chains_end_where_words_change) {
+  static const struct chain_dimension dimension[2] = {{.categorical = true}, {0}};
+  double value[36];
+  struct chain_place place[18];
+  for (int i = 0; i < 18; i++) {
+    value[2 * i] = i < 7 ? 1 : i < 9 ? 2 : 3;
+    value[2 * i + 1] = i;
+  }
+  ck_assert(chain_order(value, dimension, 18, 2, 12, place, NULL) == STATUS_OK);
+  for (size_t i = 0; i < 18; i++) {
+    ck_assert_uint_eq(place[i].chain, i >= 7);
+    ck_assert_uint_eq(place[i].position, i < 7 ? i : i - 7);
+  }
+}
+END_TEST
+
 /* From 10, 2 is nearer than 19, but a smaller part of it. */
 START_TEST(distances_may_be_those_of_logarithms) {
   static const struct chain_dimension dimension = {.logarithmic = true};
@@ -161,7 +179,7 @@ END_TEST
 START_TEST(chains_leave_work_for_several_workers) {
   ck_assert_uint_eq(chain_length(1, false), 1);
   ck_assert_uint_eq(chain_length(7, true), 1);
-  ck_assert_uint_eq(chain_length(76, false), 9);
+  ck_assert_uint_eq(chain_length(76, false), 19);
   ck_assert_uint_eq(chain_length(256, false), CHAIN_LENGTH_HEAVY);
   ck_assert_uint_eq(chain_length(10000, true), CHAIN_LENGTH_MAX);
 }
@@ -173,6 +191,7 @@ int main(void) {
   tcase_add_test(tcase, no_stretch_turned_round_makes_the_walk_shorter);
   tcase_add_test(tcase, chains_end_where_the_way_is_long);
   tcase_add_test(tcase, words_part_more_than_numbers);
+  tcase_add_test(tcase, chains_end_where_words_change);
   tcase_add_test(tcase, distances_may_be_those_of_logarithms);
   tcase_add_test(tcase, designs_without_values_keep_their_order);
   tcase_add_test(tcase, chains_leave_work_for_several_workers);

@@ -244,11 +244,34 @@ START_TEST(front_is_eliminated) {
 }
 END_TEST
 
+/* ---- eigenvalues ---- */
+
+/* Of random tensors, and of those with two or three equal eigenvalues. */
+START_TEST(largest_eigenvalue_is_that_of_jacobi) {
+  unsigned seed = 11;
+  for (int k = 0; k < 2000; k++) {
+    double f[9], c[9], value[3], v[9];
+    for (int i = 0; i < 9; i++) {
+      f[i] = k % 4 == 0 ? (i % 4 == 0) * (1 + (i == 4 * (k % 3)) * uniform(&seed)) : uniform(&seed);
+    }
+    for (int i = 0; i < 9; i++) {
+      c[i] = f[i / 3] * f[i % 3] + f[3 + i / 3] * f[3 + i % 3] + f[6 + i / 3] * f[6 + i % 3];
+    }
+    symmetric3_eigen(c, value, v);
+    ck_assert_double_eq_tol(symmetric3_largest(c), value[0], 1e-8 * value[0]);
+  }
+  ck_assert_double_eq(symmetric3_largest((double[9]){-2, 0, 0, 0, -2, 0, 0, 0, -2}), -2);
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("kernels");
   TCase *element = tcase_create("element"), *front = tcase_create("front");
+  TCase *eigen = tcase_create("eigenvalues");
   tcase_add_loop_test(element, element_is_the_sum_over_its_points, 0, 2 * SETS * VERIFY_MATERIALS);
   tcase_add_loop_test(front, front_is_eliminated, 0, 5);
+  tcase_add_test(eigen, largest_eigenvalue_is_that_of_jacobi);
+  suite_add_tcase(suite, eigen);
   suite_add_tcase(suite, element);
   suite_add_tcase(suite, front);
   return suite_run(suite);
