@@ -1,15 +1,15 @@
-#include "solver/grasp/course.h"
+#include "solver/grasp/course_internal.h"
 
 #include <math.h>
 #include <stdio.h>
 #include "solver/base/vec3.h"
-#include "solver/grasp/guess.h"
-#include "solver/grasp/stage.h"
 
 enum {
   EASY_ITERATIONS = 8,
   STEPS_MAX = 4000, /* of a stage */
-  JUMPS_MAX = 60    /* of a stage */
+  JUMPS_MAX = 60,   /* of a stage */
+  TIRED = 2,        /* carryings after which a step that fails is carried at once */
+  CRAWL = 8         /* short steps, likewise */
 };
 
 static const double cut_factor = 0.4, grow_factor = 1.6;
@@ -20,29 +20,9 @@ static const double jump_factor = 3;
 /* Error of the works of a step, as a part of them. */
 static const double works_error = 0.1;
 
-struct course {
-  struct finger *f;
-  const struct course_visit *visit;
-  struct course_report *report;
-  struct error *error;
-  struct stage stage;
-  double along;        /* of the last converged state */
-  double step;         /* part of the stage */
-  double pulled;       /* part of the pull that has passed when the release begins */
-  double time;         /* s */
-  double pace;         /* of the nodes in the last step, rms, m for the whole stage */
-  bool leaps;          /* a step over a place without equilibrium is tried */
-  int steps, jumps;    /* of the stage */
-  double stages;       /* number of stages that have passed */
-  double moving;       /* of these in motion */
-  bool touched;        /* in the pull, and not free since */
-  enum status failure; /* of the last attempt */
-  struct guess guess;  /* in the pull */
-};
-
 /* ---- what a stage does -------------------------------------------------------------------- */
 
-static struct fe_load load_at(const struct course *c, double along) {
+struct fe_load course_load_at(const struct course *c, double along) {
   enum grasp_stage kind = c->stage.kind;
   double to = c->f->spec.load.pressure_to;
   double pressure = kind < STAGE_INFLATION    ? 0
@@ -66,8 +46,7 @@ static double suction_at(const struct course *c, double along) {
                                           : 1;
 }
 
-/* Leads the object to where it is then, or puts on a free one what draws on it. */
-static void place_object(struct course *c, double along) {
+void course_place_object(struct course *c, double along) {
   struct finger *f = c->f;
   double pulled = pulled_at(c, along), from[3];
   cups_pull(f, suction_at(c, along));
@@ -97,7 +76,7 @@ static enum status take(struct course *c, bool dynamic) {
   struct grasp_sample sample = {
       .stage = c->stage.kind, .along = c->along, .dynamic = dynamic, .recorded = is_record(c)};
   sample.value[GRASP_TIME] = c->time;
-  sample.value[GRASP_PRESSURE] = load_at(c, c->along).pressure;
+  sample.value[GRASP_PRESSURE] = course_load_at(c, c->along).pressure;
   sample.value[GRASP_SHIFT] = c->f->loose.object ? loose_way(c->f) : c->f->lead.way;
   sample.value[GRASP_TURNED] = c->f->lead.turned;
   enum status status = finger_measure(c->f, &sample);
@@ -113,7 +92,7 @@ static bool final(enum status status) {
          status == STATUS_IO;
 }
 
-static void tell_energy(const struct course *c) {
+void course_tell_energy(const struct course *c) {
   const struct energy *e = &c->f->energy;
   if (c->f->solve.solver->verbose) {
     const struct fe_statistics *s = &c->f->solve.model->statistics;
@@ -142,7 +121,7 @@ static void accept(struct course *c, const struct fe_load *load) {
   if (f->loose.object) {
     loose_watch(f);
   }
-  tell_energy(c);
+  course_tell_energy(c);
 }
 
 /* Root mean square way of the nodes from the last state to the one that was tried, m. */
@@ -193,12 +172,12 @@ static bool is_stable(const struct finger *f) {
 static enum status rest_at(struct course *c, double target, int *iterations) {
   struct finger *f = c->f;
   struct fe_model *m = f->solve.model;
-  struct fe_load load = load_at(c, target);
-  double before = load_at(c, c->along).pressure;
+  struct fe_load load = course_load_at(c, target);
+  double before = course_load_at(c, c->along).pressure;
   if (f->loose.object) {
     free_object_begin(f->loose.object);
   }
-  place_object(c, target);
+  course_place_object(c, target);
   state_copy(m, &f->trial, &f->solve.state);
   guess_apply(m, &c->guess, target - c->along, &f->trial);
   c->guess.step = 0;
@@ -227,76 +206,6 @@ static enum status rest_at(struct course *c, double target, int *iterations) {
   c->stages += target - c->along;
   c->along = target;
   return STATUS_OK;
-}
-
-/* ---- jumps -------------------------------------------------------------------------------- */
-
-/* What a carrying drives: the stage goes on at its rate up to `target`. */
-struct drive {
-  struct course *c;
-  double start; /* of the motion's time, s */
-  double target;
-};
-
-static double driven_along(const struct drive *d, double time) {
-  double seconds = d->c->stage.seconds;
-  return fmin(d->target, d->c->along + (time - d->start) / seconds);
-}
-
-static enum status drive(void *context, double time, struct fe_load *load) {
-  struct drive *d = context;
-  double along = driven_along(d, time);
-  *load = load_at(d->c, along);
-  place_object(d->c, along);
-  return STATUS_OK;
-}
-
-/* Looks at the suckers; ends the motion of an object that has left the finger. */
-static enum status watch(void *context, const struct motion *motion, const struct fe_state *state,
-                         const struct fe_load *load) {
-  const struct drive *d = context;
-  (void)motion;
-  (void)state;
-  (void)load;
-  cups_watch(d->c->f);
-  return d->c->f->loose.object && loose_watch(d->c->f) ? STATUS_DIVERGED : STATUS_OK;
-}
-
-/* Follows the motion to `target` and on until the body rests, or the object has left. */
-static enum status carry_to(struct course *c, double target) {
-  struct finger *f = c->f;
-  struct drive driven = {c, f->motion.time, target};
-  struct carry_options options = carry_defaults(f->dynamics);
-  struct carry_report report;
-  double seconds = (target - c->along) * c->stage.seconds, start = f->motion.time;
-  struct fe_load load = load_at(c, c->along);
-  options.drive = (struct dynamics_drive){drive, watch, &driven};
-  options.driven = seconds;
-  options.longest += seconds;
-  options.wall_s = 0; /* the time limit of the job holds */
-  motion_clear(f->solve.model, &f->motion);
-  f->motion.time = start;
-  f->motion.step = 0;
-  enum status status = dynamics_carry(f->dynamics, &options, &load, &f->solve.state, &f->motion,
-                                      &f->energy, &report, c->error);
-  if (f->solve.solver->verbose) {
-    fprintf(stderr, "  %s %.5g in motion: %s, %d steps, %.4g s, %s\n",
-            grasp_stage_word(c->stage.kind), target, status_word(status), report.steps, report.time,
-            report.rested ? "rests" : "moves");
-  }
-  tell_energy(c);
-  if (f->loose.fell) {
-    target = driven_along(&driven, f->motion.time);
-    status = STATUS_OK;
-  }
-  c->jumps++;
-  c->report->carried++;
-  c->moving += target - c->along;
-  c->stages += target - c->along;
-  c->time += report.time;
-  c->along = target;
-  f->solve.solver->factor_fits = false;
-  return status;
 }
 
 /* ---- stages ------------------------------------------------------------------------------- */
@@ -328,8 +237,14 @@ static double next_target(const struct course *c, double goal) {
 }
 
 /* What is let go is not held again: it comes free whole. */
-static double carried_target(const struct course *c, double goal) {
-  return c->stage.kind == STAGE_LETTING_GO ? 1 : next_target(c, goal);
+static double carried_target(struct course *c, double goal) {
+  /* The more often, the farther: afterwards steps begin short again. */
+  double length = ldexp(carried_step, c->unrest < 2 ? c->unrest : 2) * c->stage.full,
+         step = c->step;
+  c->step = length;
+  double target = c->stage.kind == STAGE_LETTING_GO ? 1 : next_target(c, goal);
+  c->step = step;
+  return target;
 }
 
 /* Where steps have become too short, tries long ones: the place at which Newton's method fails may
@@ -349,38 +264,66 @@ static enum status leap(struct course *c, double goal) {
   return status;
 }
 
+/* What came of the attempt to go on in equilibrium. */
+enum outcome { OUTCOME_RESTS, OUTCOME_AGAIN, OUTCOME_MOVES, OUTCOME_ENDS };
+
+static enum outcome took_step(struct course *c, double part, int iterations) {
+  bool brief = part < 0.99 * carried_step * c->stage.full;
+  c->unrest = brief ? c->unrest : 0;
+  c->short_steps = brief ? c->short_steps + 1 : 0;
+  if (iterations <= EASY_ITERATIONS) {
+    c->step = fmin(grow_factor * c->step, c->stage.full);
+  }
+  return OUTCOME_RESTS;
+}
+
+/* One attempt; a shorter one is to follow, or the motion. Where the last ones came to little,
+ * motion is what costs less. */
+static enum outcome try_rest(struct course *c, double goal, enum status *status) {
+  int iterations = 0;
+  double target = next_target(c, goal), part = target - c->along;
+  bool may_move = c->f->grasp.dynamics && c->jumps < JUMPS_MAX;
+  bool tired = may_move && (c->unrest >= TIRED || c->short_steps >= CRAWL);
+  *status = rest_at(c, target, &iterations);
+  if (*status == STATUS_OK) {
+    return took_step(c, part, iterations);
+  }
+  if (final(*status)) {
+    return OUTCOME_ENDS;
+  }
+  c->failure = *status;
+  c->step = cut_factor * part;
+  if (!tired && c->step >= shortest * c->stage.full) {
+    return OUTCOME_AGAIN;
+  }
+  c->step = carried_step * c->stage.full;
+  *status = tired ? STATUS_STEP_MINIMUM : leap(c, goal);
+  if (*status == STATUS_OK || final(*status)) {
+    return *status == STATUS_OK ? OUTCOME_RESTS : OUTCOME_ENDS;
+  }
+  *status = STATUS_STEP_MINIMUM;
+  return may_move ? OUTCOME_MOVES : OUTCOME_ENDS;
+}
+
 /* Goes on to `goal`, a recorded place of the stage. *over: the stage ends before it. */
 static enum status reach(struct course *c, double goal, bool *over) {
   while (c->along < goal && !*over) {
-    int iterations = 0;
-    double target = next_target(c, goal), part = target - c->along;
-    bool moves = false;
-    enum status status =
-        ++c->steps > STEPS_MAX ? STATUS_STEP_MINIMUM : rest_at(c, target, &iterations);
-    if (final(status) || c->steps > STEPS_MAX) {
+    enum status status = STATUS_STEP_MINIMUM;
+    if (++c->steps > STEPS_MAX) {
       return status;
     }
-    if (status != STATUS_OK) {
-      c->failure = status;
-      c->step = cut_factor * part;
-      if (c->step >= shortest * c->stage.full) {
-        continue;
-      }
-      c->step = carried_step * c->stage.full;
-      status = leap(c, goal);
-      if (final(status)) {
-        return status;
-      }
-      moves = status != STATUS_OK;
-      if (moves && (!c->f->grasp.dynamics || c->jumps >= JUMPS_MAX)) {
-        return STATUS_STEP_MINIMUM;
-      }
-      status = moves ? carry_to(c, carried_target(c, goal)) : status;
-    } else if (iterations <= EASY_ITERATIONS) {
-      c->step = fmin(grow_factor * c->step, c->stage.full);
+    enum outcome outcome = c->afoot ? OUTCOME_MOVES : try_rest(c, goal, &status);
+    if (outcome == OUTCOME_ENDS) {
+      return status;
+    }
+    if (outcome == OUTCOME_AGAIN) {
+      continue;
+    }
+    if (outcome == OUTCOME_MOVES) {
+      status = course_carry(c, carried_target(c, goal));
     }
     if (status == STATUS_OK) {
-      status = take(c, moves);
+      status = take(c, outcome == OUTCOME_MOVES);
     }
     if (status != STATUS_OK) {
       return status;
@@ -397,6 +340,8 @@ static enum status follow_stage(struct course *c, const struct stage *stage) {
   stage_enter_leg(&c->stage, c->f, 0);
   c->step = 0.5 * c->stage.full;
   c->steps = c->jumps = 0;
+  c->unrest = c->short_steps = 0;
+  c->afoot = false;
   c->pace = 0;
   c->report->stage = stage->kind;
   enum status status = take(c, false);
@@ -434,8 +379,8 @@ enum status course_follow(struct finger *f, const struct course_visit *visit,
   int count = stages_plan(f, stages);
   *report = (struct course_report){.along = 0};
   c.stage = stages[0];
-  place_object(&c, 0);
-  struct fe_load none = load_at(&c, 0);
+  course_place_object(&c, 0);
+  struct fe_load none = course_load_at(&c, 0);
   enum status status = model_evaluate(f->solve.model, &f->solve.state, &none, false);
   model_commit_obstacles(f->solve.model, &f->solve.state);
   energy_start(&f->energy, f->solve.model, &f->solve.state, &none, 0);

@@ -10,9 +10,10 @@
  *
  * Each goes in steps of equilibrium that shrink where it is not found and grow where that was easy.
  * Where the steps get too short the body jumps: its motion is followed (solver/fe/dynamics_carry.h)
- * while the stage goes on at its rate, until the body rests; then on in equilibrium. A pull ends
- * early some way after the object came free, the course when a free object has left the finger.
- * Every stage has limits of steps and of carryings. */
+ * while the stage goes on at its rate, until the body rests; then on in equilibrium. Where it
+ * hardly rests any more it is followed over several steps at a time, and a step that fails is not
+ * tried shorter. A pull ends early some way after the object came free, the course when a free
+ * object has left the finger. Every stage has limits of steps and of carryings. */
 #ifndef PNEULAB_GRASP_COURSE_H
 #define PNEULAB_GRASP_COURSE_H
 
