@@ -80,7 +80,7 @@ const char *gripper_outcome(const struct gripper *g) {
     touched = touched || s->sample[i].value[GRASP_AREA] > 0;
   }
   const struct grasp_sample *end = last_of(s, STAGE_PULL);
-  end = end ? end : s->count > 0 ? &s->sample[s->count - 1] : NULL;
+  end = end ? end : let_go ? let_go : s->count > 0 ? &s->sample[s->count - 1] : NULL;
   return let_go && !touches(let_go) ? "fell"
          : !touched                 ? "never touched"
          : touches(end)             ? "held"
