@@ -23,11 +23,11 @@ done
 
 jq -n --arg tier "$tier" --arg reference "$reference" --slurpfile draft "$work/$tier.out" \
   --slurpfile standard "$work/$reference.out" --slurpfile study "$work/study.json" '
-  def end: { status, angle_deg: .metrics.bending_angle_deg, tip_mm: (.samples[-1] | [.tip_x_mm, .tip_z_mm]) };
+  def final: { status, angle_deg: .metrics.bending_angle_deg, tip_mm: (.samples[-1] | [.tip_x_mm, .tip_z_mm]) };
   def median: sort | if length % 2 == 1 then .[length / 2 | floor] else (.[length / 2 - 1] + .[length / 2]) / 2 end;
   ($study[0].base.actuator.length | split(" ")[0] | tonumber) as $length
   | [$draft[0].members, $standard[0].members] | transpose
-  | map({ name: .[0].name, coarse: (.[0] | end), fine: (.[1] | end) }) as $all
+  | map({ name: .[0].name, coarse: (.[0] | final), fine: (.[1] | final) }) as $all
   | [$all[] | select(.coarse.status == "succeeded" and .fine.status == "succeeded")
     | . + { angle_error: (.coarse.angle_deg / .fine.angle_deg - 1),
         tip_error: (([.coarse.tip_mm, .fine.tip_mm] | transpose | map(.[0] - .[1] | . * .) | add | sqrt) / $length) }]
