@@ -154,6 +154,40 @@ static size_t cut(const struct tour *tour, size_t from, size_t length) {
   return best;
 }
 
+/* A stretch of the walk. */
+struct stretch {
+  size_t from, to;
+};
+
+static int longer_first(const void *a, const void *b) {
+  const struct stretch *x = a, *y = b;
+  size_t p = x->to - x->from, q = y->to - y->from;
+  return p != q ? (p < q) - (p > q) : (x->from > y->from) - (x->from < y->from);
+}
+
+/* Cuts the walk into chains, and numbers them so that the longest is begun first: workers that
+ * share them end at about the same time then (Graham 1969). */
+static enum status number_chains(const struct tour *tour, size_t length, struct chain_place *place,
+                                 struct error *error) {
+  struct stretch *chain = malloc(sizeof *chain * (tour->members + 1));
+  size_t count = 0;
+  if (!chain) {
+    return error_set(error, STATUS_NO_MEMORY, NULL, "no memory to order %zu designs",
+                     tour->members);
+  }
+  for (size_t from = 0; from < tour->members; from = chain[count++].to) {
+    chain[count] = (struct stretch){from, cut(tour, from, length)};
+  }
+  qsort(chain, count, sizeof *chain, longer_first);
+  for (size_t c = 0; c < count; c++) {
+    for (size_t k = chain[c].from; k < chain[c].to; k++) {
+      place[tour->walk[k]] = (struct chain_place){c, k - chain[c].from};
+    }
+  }
+  free(chain);
+  return STATUS_OK;
+}
+
 enum status chain_order(const double *value, const struct chain_dimension *dimension,
                         size_t members, size_t dimensions, size_t length, struct chain_place *place,
                         struct error *error) {
@@ -173,12 +207,7 @@ enum status chain_order(const double *value, const struct chain_dimension *dimen
     greedy(point, dimension, members, dimensions, walk);
     shorten(&tour);
   }
-  for (size_t from = 0, c = 0, to; from < members; from = to, c++) {
-    to = cut(&tour, from, length);
-    for (size_t k = from; k < to; k++) {
-      place[walk[k]] = (struct chain_place){c, k - from};
-    }
-  }
+  status = number_chains(&tour, length, place, error);
 done:
   free(point);
   free(walk);

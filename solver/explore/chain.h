@@ -35,9 +35,9 @@ size_t chain_length(size_t members, bool light);
  * then stretches of it are turned round while that makes it shorter (Croes 1958). Two words are as
  * far apart as all other dimensions together. It is cut into chains of at most `length`: where a
  * word changes, unless the chain has less than a quarter of the length then, or else after the
- * longest leg of its second half. Without dimensions it is the order of the members. The same
- * values give the same chains, whatever the machine does meanwhile; takes some ten times members^2
- * x dimensions operations. STATUS_OK or STATUS_NO_MEMORY.
+ * longest leg of its second half. The longest chain is the first one. Without dimensions it is the
+ * order of the members. The same values give the same chains, whatever the machine does meanwhile;
+ * takes some ten times members^2 x dimensions operations. STATUS_OK or STATUS_NO_MEMORY.
  */
 enum status chain_order(const double *value, const struct chain_dimension *dimension,
                         size_t members, size_t dimensions, size_t length, struct chain_place *place,
