@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "solver/job/bistable.h"
+#include "solver/job/grasp.h"
 #include "solver/job/hlpv.h"
 #include "solver/job/snap.h"
 #include "solver/job/identify.h"
@@ -49,8 +50,12 @@ static bool is_complete(const struct job_spec *spec) {
   if (spec->kind == JOB_MATERIAL_CURVE) {
     return spec->curve.points >= 2 && material_shear_modulus(&spec->material) > 0.0;
   }
-  return spec->pneunet.cavity_length > 0.0 && spec->pneunet.length > 0.0 &&
-         material_shear_modulus(&spec->material) > 0.0 && spec->load.steps >= 1;
+  bool body = spec->family == FAMILY_PNEUNET
+                  ? spec->pneunet.cavity_length > 0.0 && spec->pneunet.length > 0.0
+                  : spec->oblique.cavity > 0.0 && spec->oblique.length > 0.0;
+  bool weighs =
+      spec->kind != JOB_GRASP || !spec->grasp->object.free || spec->grasp->object.mass > 0.0;
+  return body && weighs && material_shear_modulus(&spec->material) > 0.0 && spec->load.steps >= 1;
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
