@@ -7,6 +7,10 @@
 
 #include "solver/base/text.h"
 
+bool status_is_final(enum status status) {
+  return status == STATUS_TIMEOUT || status == STATUS_CANCELLED || status == STATUS_NO_MEMORY;
+}
+
 const char *status_word(enum status status) {
   static const char *const words[] = {
 #define STATUS_WORD(name, word, sentence) word,

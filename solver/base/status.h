@@ -2,6 +2,8 @@
 #ifndef PNEULAB_BASE_STATUS_H
 #define PNEULAB_BASE_STATUS_H
 
+#include <stdbool.h>
+
 /* X(name, word, sentence): the word is the stable reason code written into
  * results and HTTP problem documents. */
 #define STATUS_LIST(X)                                                                             \
@@ -38,6 +40,10 @@ enum status {
 #undef STATUS_ENUM
       STATUS_COUNT
 };
+
+/* Whether another attempt is of no use: the time is over, the work was cancelled, or there is no
+ * memory. */
+bool status_is_final(enum status status);
 
 /* Stable machine-readable word of a status ("limit_point"). Static storage. */
 const char *status_word(enum status status);

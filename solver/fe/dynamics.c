@@ -222,10 +222,6 @@ enum status dynamics_step(struct dynamics *d, const struct fe_load *load, double
   return status;
 }
 
-static bool final(enum status status) {
-  return status == STATUS_TIMEOUT || status == STATUS_CANCELLED || status == STATUS_NO_MEMORY;
-}
-
 /* Length of the step to try: one that would leave a sliver before `until` ends on it. */
 static double next_step(const struct dynamics *d, const struct motion *motion, double until) {
   double h = fmin(motion->step, d->options.longest), left = until - motion->time;
@@ -265,7 +261,7 @@ static enum status attempt(struct dynamics *d, const struct dynamics_drive *driv
   }
   status = solve(d, &end, load->pressure, h, state, motion);
   if (status != STATUS_OK) {
-    *again = !final(status);
+    *again = !status_is_final(status);
     motion->step = cut_factor * h;
     return status;
   }

@@ -57,10 +57,6 @@ enum status walk_advance(struct walk *w, const struct stage *stage, double targe
   return status;
 }
 
-bool walk_final(enum status status) {
-  return status == STATUS_TIMEOUT || status == STATUS_CANCELLED || status == STATUS_NO_MEMORY;
-}
-
 /* Next load to try on the way to `goal`: a step that would leave a sliver before it ends on it. */
 static double next_target(const struct walk *w, double goal) {
   double target = w->value + w->step;
@@ -127,7 +123,7 @@ static enum status reach(struct walk *w, const struct stage *stage, double goal)
     be_hasty(w, stage, target, goal);
     enum status status = walk_advance(w, stage, target, &iterations);
     w->solver->options.passing = false;
-    if (walk_final(status)) {
+    if (status_is_final(status)) {
       return status;
     }
     if (status != STATUS_OK) {
@@ -179,7 +175,7 @@ static enum status foresee(struct walk *w, const struct stage *stage) {
   }
   solver->factor_fits = status == STATUS_OK;
   free(direction);
-  return walk_final(status) ? status : STATUS_OK;
+  return status_is_final(status) ? status : STATUS_OK;
 }
 
 static enum status walk_stage(struct walk *w, const struct stage *stage) {

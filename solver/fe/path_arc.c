@@ -117,7 +117,7 @@ static enum status land(struct arc *a, double goal, double value, int *iteration
   w->iterations += *iterations;
   if (status == STATUS_OK) {
     arrive(w, goal);
-  } else if (!walk_final(status) && value - goal < landing_tolerance * goal) {
+  } else if (!status_is_final(status) && value - goal < landing_tolerance * goal) {
     state_copy(w->solver->model, &w->trial, passed);
     arrive(w, value);
     status = STATUS_OK;
@@ -151,12 +151,12 @@ static enum status follow(struct arc *a, double goal) {
     enum status status = try_step(a, &load, &iterations);
     double value = a->stage->dead ? load.dead : load.pressure;
     w->arc_steps++;
-    if (walk_final(status)) {
+    if (status_is_final(status)) {
       return status;
     }
     if (status == STATUS_OK && value >= goal) {
       status = land(a, goal, value, &iterations);
-      if (status == STATUS_OK || walk_final(status)) {
+      if (status == STATUS_OK || status_is_final(status)) {
         return status;
       }
     }
@@ -209,7 +209,7 @@ static enum status leave_branch(struct arc *a, double goal) {
       fprintf(stderr, "  pushed %.2f walls: %s after %d factorisations, %d negative\n", pushes[k],
               status_word(status), iterations, solver->negative_pivots);
     }
-    if (walk_final(status)) {
+    if (status_is_final(status)) {
       return status;
     }
     if (status == STATUS_OK && solver->negative_pivots == 0) {
@@ -237,7 +237,7 @@ enum status walk_arc(struct walk *w, const struct stage *stage, double goal) {
       state_create(m, &a.passed) == STATUS_OK) {
     state_copy(m, &a.state, w->state);
     status = follow(&a, goal);
-    if (!walk_final(status) && status != STATUS_OK && status != STATUS_LIMIT_POINT &&
+    if (!status_is_final(status) && status != STATUS_OK && status != STATUS_LIMIT_POINT &&
         at_singular_tangent(&a)) {
       status = w->pushed < PUSHES ? leave_branch(&a, goal) : STATUS_UNSTABLE_PATH;
       w->pushed++;

@@ -37,9 +37,6 @@ enum status walk_visit(struct walk *walk, const struct stage *stage, bool record
 enum status walk_advance(struct walk *walk, const struct stage *stage, double target,
                          int *iterations);
 
-/* Whether a failure ends the walk whatever the step. */
-bool walk_final(enum status status);
-
 /* Goes on by arc length from the last converged state until the load reaches `goal`: STATUS_OK, the
  * state is then in equilibrium with it. LIMIT_POINT when the load falls on the way and does not
  * come back within some steps; the state is then that before the limit point. Else the failure. */

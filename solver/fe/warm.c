@@ -129,10 +129,6 @@ static enum status solve_guess(struct descent *d, const struct fe_load *load, do
   return status;
 }
 
-static bool final(enum status status) {
-  return status == STATUS_TIMEOUT || status == STATUS_CANCELLED || status == STATUS_NO_MEMORY;
-}
-
 /* Equilibrium at a load below `previous`. */
 static enum status step_down(struct descent *d, double pressure, double previous, int *iterations) {
   struct fe_load load = {pressure, pressure, d->options->dead_load ? 1 : 0};
@@ -141,7 +137,7 @@ static enum status step_down(struct descent *d, double pressure, double previous
     return equilibrium_solve(d->solver, &load, previous, d->state, iterations);
   }
   enum status status = solve_guess(d, &load, previous, !mixed, iterations);
-  if (mixed && status != STATUS_OK && !final(status)) {
+  if (mixed && status != STATUS_OK && !status_is_final(status)) {
     status = solve_guess(d, &load, previous, true, iterations);
   }
   return status;

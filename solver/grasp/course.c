@@ -88,8 +88,7 @@ static enum status take(struct course *c, bool dynamic) {
 }
 
 static bool final(enum status status) {
-  return status == STATUS_TIMEOUT || status == STATUS_CANCELLED || status == STATUS_NO_MEMORY ||
-         status == STATUS_IO;
+  return status_is_final(status) || status == STATUS_IO;
 }
 
 void course_tell_energy(const struct course *c) {
@@ -231,20 +230,16 @@ static bool is_free(struct course *c) {
 }
 
 /* The way to the goal in equal steps: a short one at its end would gain nothing. */
-static double next_target(const struct course *c, double goal) {
-  double count = ceil((goal - c->along) / c->step - 0.05);
+static double next_target(const struct course *c, double goal, double step) {
+  double count = ceil((goal - c->along) / step - 0.05);
   return count <= 1 ? goal : c->along + (goal - c->along) / count;
 }
 
 /* What is let go is not held again: it comes free whole. */
-static double carried_target(struct course *c, double goal) {
+static double carried_target(const struct course *c, double goal) {
   /* The more often, the farther: afterwards steps begin short again. */
-  double length = ldexp(carried_step, c->unrest < 2 ? c->unrest : 2) * c->stage.full,
-         step = c->step;
-  c->step = length;
-  double target = c->stage.kind == STAGE_LETTING_GO ? 1 : next_target(c, goal);
-  c->step = step;
-  return target;
+  double step = ldexp(carried_step, c->unrest < 2 ? c->unrest : 2) * c->stage.full;
+  return c->stage.kind == STAGE_LETTING_GO ? 1 : next_target(c, goal, step);
 }
 
 /* Where steps have become too short, tries long ones: the place at which Newton's method fails may
@@ -281,7 +276,7 @@ static enum outcome took_step(struct course *c, double part, int iterations) {
  * motion is what costs less. */
 static enum outcome try_rest(struct course *c, double goal, enum status *status) {
   int iterations = 0;
-  double target = next_target(c, goal), part = target - c->along;
+  double target = next_target(c, goal, c->step), part = target - c->along;
   bool may_move = c->f->grasp.dynamics && c->jumps < JUMPS_MAX;
   bool tired = may_move && (c->unrest >= TIRED || c->short_steps >= CRAWL);
   *status = rest_at(c, target, &iterations);

@@ -76,8 +76,7 @@ static enum status solid_fold(void *self, const struct folded_limits *limits,
     return fold_like_pair(solid, limits, state, error);
   }
   enum status status = folded_state(spec, &solid->bellows, solid->model, limits, state, error);
-  bool final = status == STATUS_OK || status == STATUS_TIMEOUT || status == STATUS_CANCELLED ||
-               status == STATUS_NO_MEMORY;
+  bool final = status == STATUS_OK || status_is_final(status);
   return final || spec->model == SNAP_SHELL || spec->accuracy == ACCURACY_FAST
              ? status
              : fold_like_pair(solid, limits, state, error);

@@ -7,8 +7,7 @@
 /* ---- states and paths --------------------------------------------------------------------- */
 
 bool snap_is_final(enum status status) {
-  return status == STATUS_NO_MEMORY || status == STATUS_TIMEOUT || status == STATUS_CANCELLED ||
-         status == STATUS_INTERNAL;
+  return status_is_final(status) || status == STATUS_INTERNAL;
 }
 
 void snap_path_release(struct snap_path *path) {
