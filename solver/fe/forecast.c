@@ -3,11 +3,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "solver/base/lapack.h"
 #include "solver/base/vec3.h"
 #include "solver/fe/section_form.h"
-
-void dposv_(const char *triangle, const int *n, const int *columns, double *a, const int *lead,
-            double *b, const int *leading_b, int *info);
 
 /* Length over which the correlation falls, in ranges of the coordinates; and what is added to the
  * correlation of a point with itself, because states are only known to the tolerance of a solve. */

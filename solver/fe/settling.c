@@ -4,18 +4,15 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include "solver/fe/obstacle_internal.h"
+#include "solver/base/lapack.h"
 #include "solver/base/vec3.h"
+#include "solver/fe/obstacle_internal.h"
 
 enum { WINDOW = 8 };
 /* An update after which the difference has grown by this much starts anew. */
 static const double growth = 2;
 /* Of the normal equations of the differences, by their trace. */
 static const double regularization = 1e-12;
-
-/* LAPACK, as the BLAS library brings it: Cholesky factors and the solution. */
-void dposv_(const char *half, const int *n, const int *columns, double *a, const int *lead,
-            double *b, const int *lead_b, int *info);
 
 /* Multipliers z, their change f = G(z) - z, and the nodal forces of the change. */
 struct settling {

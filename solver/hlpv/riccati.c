@@ -3,18 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* LAPACK, as the BLAS library brings it; matrices column by column. */
-typedef int select_function(const double *alpha_r, const double *alpha_i, const double *beta);
-void dgges_(const char *left, const char *right, const char *sort, select_function *select,
-            const int *n, double *a, const int *lead_a, double *b, const int *lead_b, int *selected,
-            double *alpha_r, double *alpha_i, double *beta, double *vsl, const int *lead_l,
-            double *vsr, const int *lead_r, double *work, const int *work_size, int *flags,
-            int *info);
-void dgesv_(const int *n, const int *columns, double *a, const int *lead, int *pivot, double *b,
-            const int *lead_b, int *info);
-void dgeev_(const char *left, const char *right, const int *n, double *a, const int *lead,
-            double *real, double *imaginary, double *vl, const int *lead_l, double *vr,
-            const int *lead_r, double *work, const int *work_size, int *info);
+#include "solver/base/lapack.h"
 
 enum {
   N = RICCATI_STATES_MAX,

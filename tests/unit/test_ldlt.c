@@ -3,15 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "solver/base/lapack.h"
 #include "solver/fe/ldlt.h"
 #include "tests/unit/suite.h"
-
-/* LAPACK, as the BLAS library brings it. */
-void dsyev_(const char *job, const char *triangle, const int *n, double *a, const int *lead,
-            double *value, double *work, const int *work_size, int *info);
-void dsysv_(const char *triangle, const int *n, const int *columns, double *a, const int *lead,
-            int *pivot, double *b, const int *lead_b, double *work, const int *work_size,
-            int *info);
 
 enum { NODE_DOFS = 3, CLIQUE_NODES = 6, CLIQUE_DOFS = CLIQUE_NODES * NODE_DOFS };
 
