@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "solver/base/lapack.h"
 #include "solver/base/vec3.h"
 
 /* Pivots of the six by six system below this part of the largest one belong to motions that nothing
@@ -280,40 +281,25 @@ static void restore(void *context) {
   model_place_obstacle(o->model, o->index, &o->kept);
 }
 
-/* Symmetric elimination, the largest pivot first; of half an object only what stays in the plane.
+/* By the smallest eigenvalue of the stiffness; of half an object that of what stays in the plane.
  */
 bool free_object_stable(const struct free_object *o) {
+  static const int work_size = 64;
+  double a[36], value[6], work[64];
+  int count = 0, info = 0;
   if (o->guided) {
     return guided_stiffness(o) >= 0;
   }
-  double a[6][6], largest = 0;
-  bool left[6];
   for (int i = 0; i < 36; i++) {
+    bool moves = !o->half || (i / 6 % 2 == 0 && i % 6 % 2 == 0);
     double scale = (i / 6 < 3 ? 1 : 1 / o->size) * (i % 6 < 3 ? 1 : 1 / o->size);
-    a[i / 6][i % 6] = 0.5 * scale * (o->tangent[i] + o->tangent[6 * (i % 6) + i / 6]);
-  }
-  for (int i = 0; i < 6; i++) {
-    left[i] = !o->half || i % 2 == 0;
-    largest = left[i] ? fmax(largest, fabs(a[i][i])) : largest;
-  }
-  for (int n = 0; n < 6; n++) {
-    int k = -1;
-    for (int i = 0; i < 6; i++) {
-      k = left[i] && (k < 0 || fabs(a[i][i]) > fabs(a[k][k])) ? i : k;
-    }
-    if (k < 0 || fabs(a[k][k]) <= idle_stiffness * largest) {
-      return true;
-    }
-    if (a[k][k] < 0) {
-      return false;
-    }
-    left[k] = false;
-    for (int i = 0; i < 36; i++) {
-      bool inside = left[i / 6] && left[i % 6];
-      a[i / 6][i % 6] -= inside ? a[i / 6][k] * a[k][i % 6] / a[k][k] : 0;
+    if (moves) {
+      a[count++] = 0.5 * scale * (o->tangent[i] + o->tangent[6 * (i % 6) + i / 6]);
     }
   }
-  return true;
+  int n = o->half ? 3 : 6;
+  dsyev_("N", "U", &n, a, &n, value, work, &work_size, &info);
+  return info == 0 && value[0] >= -idle_stiffness * fmax(fabs(value[0]), fabs(value[n - 1]));
 }
 
 void free_object_begin(struct free_object *o) {

@@ -355,6 +355,27 @@ START_TEST(masses_are_checked) {
 }
 END_TEST
 
+/* Stiffnesses of which the answer is known: springs along the axes; one that pushes on; two motions
+ * of which neither is resisted alone, but one gains force by the other; the same across the plane
+ * of symmetry of half an object, which cannot move so. */
+START_TEST(stable_is_what_no_push_drives_away) {
+  struct free_object o = {.size = 0.02};
+  for (int i = 0; i < 6; i++) {
+    o.tangent[7 * i] = i < 3 ? 100 : 0.01;
+  }
+  ck_assert(free_object_stable(&o));
+  o.tangent[0] = 0;
+  ck_assert(free_object_stable(&o)); /* nothing resists that, and nothing drives it */
+  o.tangent[0] = -1;
+  ck_assert(!free_object_stable(&o));
+  o.tangent[0] = o.tangent[7] = 0;
+  o.tangent[1] = o.tangent[6] = 50;
+  ck_assert(!free_object_stable(&o));
+  o.half = true;
+  ck_assert(free_object_stable(&o));
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("free object");
   const struct {
@@ -367,6 +388,7 @@ int main(void) {
                {"fall", a_falling_ball_comes_to_rest_on_the_body, 1},
                {"support", an_object_without_support_has_no_equilibrium, 1},
                {"air", a_tumbling_box_keeps_its_moment_of_momentum, 1},
+               {"stable", stable_is_what_no_push_drives_away, 1},
                {"mass", masses_are_checked, 1}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     TCase *tcase = tcase_create(cases[k].name);
