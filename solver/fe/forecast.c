@@ -316,6 +316,7 @@ enum status forecast_make(struct forecast *f, const struct fe_model *m, const do
   if (status != STATUS_OK) {
     path_record_destroy(*out);
     *out = NULL;
+    forget(f, f->count); /* some may have been seen from their sections by half */
   }
   free(known);
   free(places);

@@ -21,8 +21,8 @@ void forecast_destroy(struct forecast *forecast);
 enum status forecast_add(struct forecast *forecast, struct path_record *record);
 
 /* The path of the model's body, at point place[DESIGN_NUMBERS], as if it had been recorded. *out is
- * the caller's, and NULL where nothing is known of bodies with its topology. STATUS_OK or
- * STATUS_NO_MEMORY. */
+ * the caller's, and NULL where nothing is known of bodies with its topology. STATUS_OK, or
+ * STATUS_NO_MEMORY: nothing is known any more then. */
 enum status forecast_make(struct forecast *forecast, const struct fe_model *model,
                           const double *place, struct path_record **out);
 
