@@ -122,7 +122,6 @@ enum status equilibrium_augment(struct equilibrium *s, struct fe_load *load, str
   return good && forces.next < unsettled_forces ? STATUS_OK : STATUS_CONTACT;
 }
 
-/* Multipliers to start from: those of the state, carried on at the rate of the last step. */
 void equilibrium_start_multipliers(struct equilibrium *s, const struct fe_state *state,
                                    double ratio) {
   struct contact *contact = &s->model->contact;
@@ -133,7 +132,6 @@ void equilibrium_start_multipliers(struct equilibrium *s, const struct fe_state 
   obstacles_use(s->model, state);
 }
 
-/* The state takes over the multipliers of the contact. */
 void equilibrium_keep_multipliers(struct equilibrium *s, struct fe_state *state) {
   const struct contact *contact = &s->model->contact;
   for (int i = 0; i < contact->point_count; i++) {

@@ -36,10 +36,6 @@ static bool along_axis(const double v[3]) {
 /* Fingers that are computed one by one meet through the object; only where all are alike, and each
  * of them symmetric, is it known how it moves: along their axis. */
 static enum status check_fingers(const struct reader *reader, const struct job_spec *job) {
-  static const char allowed[] =
-      "fingers share a free object only when all see it alike and left and right: a shape of "
-      "revolution about the gripper's axis (or a box between two fingers), in the middle; one "
-      "finger, or a fixed object, may be as they are";
   const struct grasp_spec *spec = job->grasp;
   struct grasp_spec first = grasp_of_finger(spec, 0);
   struct job_spec finger = *job;
@@ -66,8 +62,12 @@ static enum status check_fingers(const struct reader *reader, const struct job_s
     alike = alike && grasp_same(&first, &seen);
   }
   return alike ? STATUS_OK
-               : error_set(reader->error, STATUS_INVALID, "/object",
-                           "the fingers do not all see the free object alike\n%s", allowed);
+               : refuse(reader, "/object",
+                        "the fingers do not all see the free object alike\n"
+                        "fingers share a free object only when all see it alike and left and "
+                        "right: a shape of revolution about the gripper's axis (or a box between "
+                        "two fingers), in the middle; one finger, or a fixed object, may be as "
+                        "they are");
 }
 
 enum status reader_grasp_check(const struct reader *reader, const json_t *document,
